@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_DRAWING_RENDER_H_
+#define POSESPACE_DRAWING_RENDER_H_
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "drawing/image.h"
+#include "geometry/mesh.h"
+
+namespace posespace {
+
+// A texture made ready for mixing: premultiplied alpha, linear light, float.
+// Immutable; share freely.  16 bytes a texel.
+class RenderTexture {
+ public:
+  explicit RenderTexture(const Texture& texture);
+
+  // Premultiplied linear RGBA at a place in drawing pixels, bilinear; transparent outside.
+  Eigen::Array4f At(const Point& place) const;
+
+ private:
+  int width_;
+  int height_;
+  Point origin_;
+  double scale_;
+  std::vector<float> texels_;
+};
+
+// One pose's part in a picture.
+struct RenderLayer {
+  const Points* pose;            // V x 2: where the mesh lies in this pose's drawing
+  const RenderTexture* texture;  // may be shared with other layers
+  double weight;                 // texture weight w''; below 1/512 the layer is skipped
+};
+
+// Which part of the plane a picture shows: pixel = (p - origin) * scale.
+struct View {
+  Point origin = Point::Zero();
+  double scale = 1.0;
+  int width = 0;
+  int height = 0;
+};
+
+// The view that shows a box of drawing pixels centred in width x height with its aspect kept.
+View FitView(const Point& low, const Point& high, int width, int height);
+
+// Draws a mesh with the weighted mix of its poses' pixels.
+//
+// Each output pixel whose centre lies in a triangle takes, from every layer, the texel at the same
+// barycentric place; mixed premultiplied in linear light, delivered as straight sRGB with alpha.
+// Triangles share their edges by a top-left rule: no seams, no pixel drawn twice by neighbours; where the
+// mesh overlaps itself, later triangles lie on top.  Silhouettes are antialiased by the textures'
+// own alpha, since the mesh encloses every painted pixel.
+//
+// Requires  vertices V x 2, finite; each layer's pose has V rows.
+// Cost      O(pixels covered x layers).  Pure; call from any thread.
+Image Render(const Triangles& triangles, const Points& vertices,
+             std::span<const RenderLayer> layers, const View& view);
+
+}  // namespace posespace
+
+#endif  // POSESPACE_DRAWING_RENDER_H_

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_INTERPOLATION_POSE_WEIGHTS_H_
+#define POSESPACE_INTERPOLATION_POSE_WEIGHTS_H_
+
+#include <memory>
+
+#include "geometry/mesh.h"
+#include "geometry/progress.h"
+#include "geometry/result.h"
+
+namespace posespace {
+
+struct PoseWeightsOptions {
+  // Distance over which weights flatten far from the poses, / diameter of the placements.
+  double levelling = 0.4;
+};
+
+// The weight of every pose at every point of the 2D pose space: N smooth functions that are exact at
+// the placements and sum to one everywhere.
+//
+// Weights over poses, not over mesh vertices; the mesh solve is rigid_blend.h.
+//
+// The plane is tessellated with a near-equilateral lattice over the placements' bounding box and a
+// margin of half their diameter; the weights minimise the jumps of their gradient over the
+// lattice's edges (a discrete biharmonic energy) and, slightly, the gradient itself.  Between
+// lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1 everywhere: also
+// across the domain's rim, outside of which each point takes the weights of the closest point of
+// the rim, and at its corners.
+//
+// Weights may be negative and exceed 1 (extrapolation): see shear_limit.h.
+//
+// Immutable; share freely.  At() allocates nothing but its result and takes no lock.
+// Follows   Baxter, Barla, Anjyo 2009, section 4.1, equations (1) and (2).
+class PoseWeights {
+ public:
+  // Requires  placements N x 2, N >= 1, row i the place of pose i in pose space, any unit.
+  // Fails     kPlacementNotFinite, kPlacementsCoincide (names both rows; closer than 1e-3 of the
+  //           diameter), kCancelled.
+  // Cost      one sparse factorisation of at most some 20,000 unknowns: well under a second.
+  static Result<PoseWeights> Fit(const Points& placements, const PoseWeightsOptions& options = {},
+                                 Progress* progress = nullptr);
+
+  // The N weights at a finite point.
+  Eigen::VectorXd At(const Point& point) const;
+
+  int num_poses() const;
+
+ private:
+  struct Field;
+  explicit PoseWeights(std::shared_ptr<const Field> field) : field_(std::move(field)) {}
+  std::shared_ptr<const Field> field_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_INTERPOLATION_POSE_WEIGHTS_H_

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_MAPPING_BOUNDARY_MATCHING_H_
+#define POSESPACE_MAPPING_BOUNDARY_MATCHING_H_
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "geometry/progress.h"
+#include "geometry/result.h"
+
+namespace posespace {
+
+// One drawing's outer outline as matching sees it.
+struct MatchingShape {
+  std::string name;         // for messages
+  Points outline;           // K x 2, simple, positively oriented, drawing pixels
+  Eigen::MatrixXd colours;  // K x 3, the colour just inside row k, RGB in [0, 1]; 0 rows: no colour
+};
+
+// One place of the character, marked in some of the drawings: entry i is its point in drawing i.
+struct Landmark {
+  std::vector<std::optional<Point>> points;  // N entries, drawing pixels
+};
+
+struct MatchingOptions {
+  // Weights of |position difference|^2 (in drawing sizes, from the centroids) and of |colour
+  // difference|^2 in the matching cost, and of ln(slope)^2 against uneven stretching.
+  double position_weight = 0.05;
+  double colour_weight = 0.3;
+  double stretch_weight = 0.05;
+  // Colour is used only between drawings whose mean colour difference along the map found without
+  // it is below this (RGB in [0, 1]): drawings painted in other colours say nothing by them.
+  double max_colour_difference = 0.12;
+  // Farthest a landmark may lie from the outline it marks, / size of the drawing.
+  double max_landmark_distance = 0.05;
+};
+
+// Outlines in correspondence.
+struct MatchedOutlines {
+  std::vector<Points> outlines;    // N of n x 2: row k is the same place on every outline
+  std::vector<int> landmark_rows;  // the row of each landmark, in the caller's order
+  std::vector<double> confidence;  // per drawing, in (0, 1]: how clear its matching is; 1 when N = 1
+};
+
+// Finds which point of each outline is which point of every other: the paper's boundary matching,
+// for N drawings at once and with no drawing privileged.
+//
+// Every corner of every outline becomes a row, so each output ring follows its outline exactly (to
+// the distance at which corners are merged, 0.25 % of the perimeter).  Each ring is simple and
+// positively oriented.  Every landmark is a row: in the drawings that it marks, that row is the
+// outline point nearest to the mark.  The result depends on the order of the drawings only in the
+// order of its rows.
+//
+// Requires  N >= 1 shapes; each landmark has N entries, at least one of them set.
+// Fails     kLandmarkNotFinite, kLandmarkOffOutline (names landmark, drawing, distance and limit),
+//           kLandmarksOutOfOrder (names every contradicting pair of landmarks with two drawings),
+//           kCancelled.
+// Cost      O(N^2 M^2) with M = 64 samples to compare all pairs, O(N M^2) with M = 256 to match.
+// Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Boundary matching", with a multi-scale elastic
+//           cost and composition along a minimum spanning tree instead of a privileged drawing.
+Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
+                                        std::span<const Landmark> landmarks = {},
+                                        const MatchingOptions& options = {},
+                                        Progress* progress = nullptr);
+
+}  // namespace posespace
+
+#endif  // POSESPACE_MAPPING_BOUNDARY_MATCHING_H_
