@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_SESSION_POSE_SPACE_H_
+#define POSESPACE_SESSION_POSE_SPACE_H_
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "drawing/image.h"
+#include "drawing/outline.h"
+#include "drawing/render.h"
+#include "geometry/progress.h"
+#include "geometry/result.h"
+#include "interpolation/pose_weights.h"
+#include "interpolation/rigid_blend.h"
+#include "mapping/pipeline.h"
+
+namespace posespace {
+
+// A drawing as it was uploaded and understood.  Immutable.
+struct Drawing {
+  std::string id;
+  std::string digest;  // of the source and its options
+  double width = 0.0;  // drawing pixels
+  double height = 0.0;
+  Outline outline;
+  Texture texture;
+};
+
+// Everything that decides what is built.  Immutable value.
+struct BuildInputs {
+  std::vector<std::shared_ptr<const Drawing>> drawings;  // in the order of upload
+  std::vector<Landmark> landmarks;
+  Points placements;  // N x 2, row i the place of drawings[i] in pose space
+  MappingOptions options;
+};
+
+// Digest of the inputs and the algorithm version, as lower-case hexadecimal: the mesh's inputs alone
+// (without placements), and all of them.  Equal inputs have equal digests.
+std::string MeshDigest(const BuildInputs& inputs);
+std::string RevisionDigest(const BuildInputs& inputs);
+
+// What to blend, and how.
+struct Query {
+  std::variant<Point, Eigen::VectorXd> position;  // a point of pose space, or explicit weights
+  BlendOptions options;
+  double sigma = 0.0;  // sharpness of texture transitions, 0 .. 1
+};
+
+// A drawing at a place in pose space.
+struct Frame {
+  Eigen::VectorXd weights;          // N, sum 1
+  Eigen::VectorXd texture_weights;  // N, in [0, 1], sum 1
+  Points vertices;                  // V x 2; no rows when only weights were wanted
+  int folds = 0;                    // triangles that are not positive
+};
+
+// What a build makes and everybody shares: the mesh, the blend, the weight field, the textures.
+// Immutable; share freely.  A blend takes no lock.
+class PoseSpace {
+ public:
+  // Builds from scratch; reports stages of mapping and "weights" to `progress`.
+  static Result<std::shared_ptr<const PoseSpace>> Build(const BuildInputs& inputs,
+                                                        Progress* progress = nullptr);
+
+  // The same mesh and drawings at other placements: only the weight field and turns are made anew.
+  Result<std::shared_ptr<const PoseSpace>> WithPlacements(const Points& placements) const;
+
+  // Fails  kPoseNotFinite, kWeightsNotFinite, kWeightsCountMismatch, kWeightsSumNotOne (1e-3),
+  //        kInvalidOption (refits, sigma).
+  Result<Frame> Blend(const Query& query, bool weights_only = false) const;
+
+  // The blend of a query as a picture.
+  Image Render(const Frame& frame, const View& view) const;
+
+  // The view that every picture of this pose space uses unless told otherwise: the box of all poses
+  // with a margin of a twentieth of it on each side.
+  View DefaultView(int width, int height) const;
+
+  const std::string& revision() const;
+  const CompatibleMesh& mesh() const;
+  const std::vector<std::shared_ptr<const Drawing>>& drawings() const;
+  const std::vector<int>& turns() const;
+  const MappingReport& report() const;
+  const std::vector<std::string>& warnings() const;  // what a person should know of the build
+
+ private:
+  struct State;
+  explicit PoseSpace(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_SESSION_POSE_SPACE_H_

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_SESSION_REGISTRY_H_
+#define POSESPACE_SESSION_REGISTRY_H_
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/result.h"
+#include "session/session.h"
+
+namespace posespace {
+
+// All sessions, by id; in memory.  Thread-safe; Find is a short shared lock that no build, upload or
+// blend holds.
+class Registry {
+ public:
+  explicit Registry(const Limits& limits);
+  ~Registry();
+
+  struct NewSession {
+    std::string id;  // empty: an unguessable one is chosen (128 random bits)
+    std::string display_name;
+    std::map<std::string, std::string> labels;
+    std::string request_id;  // the same again returns the session of the first call
+  };
+  // Fails  kInvalidId, kSessionExists, kSessionLimit, kInvalidOption (labels).
+  Result<std::shared_ptr<Session>> Create(NewSession request);
+
+  // Fails  kInvalidId (empty), kSessionNotFound.
+  Result<std::shared_ptr<Session>> Find(const std::string& id) const;
+
+  // Up to `count` sessions with ids greater than `after`, by id; next_token of the last page is empty.
+  struct Page {
+    std::vector<std::shared_ptr<Session>> sessions;
+    std::string next_token;
+  };
+  Page List(int count, const std::string& after) const;
+
+  // Fails  kSessionNotFound, kEtagMismatch (a non-empty etag that is not the session's).
+  Result<void> Delete(const std::string& id, const std::string& etag);
+
+  BuildPool& build_pool();
+  const Limits& limits() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_SESSION_REGISTRY_H_
