@@ -45,6 +45,14 @@ struct MatchedOutlines {
   std::vector<double> confidence;  // per drawing, in (0, 1]: how clear its matching is; 1 when N = 1
 };
 
+// Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at once,
+// each with a field "tuples[L].points['shape']".
+//
+// Fails     kLandmarkNotFinite, kLandmarkOffOutline, kLandmarksOutOfOrder as MatchBoundaries does.
+Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
+                            std::span<const Landmark> landmarks,
+                            const MatchingOptions& options = {});
+
 // Finds which point of each outline is which point of every other: the paper's boundary matching,
 // for N drawings at once and with no drawing privileged.
 //
