@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # One way to declare a library of ours and one way to declare a test program.
 
+set(POSESPACE_ROOT "${CMAKE_CURRENT_LIST_DIR}/..")
+
 # What our own code is compiled with; third-party and generated code is not.
 add_library(posespace_options INTERFACE)
 target_compile_options(posespace_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
@@ -18,7 +20,7 @@ endif()
 function(posespace_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}/server")
+  target_include_directories(${name} PUBLIC "${POSESPACE_ROOT}/server")
   target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS}
                         posespace_options)
 endfunction()
@@ -27,8 +29,8 @@ endfunction()
 function(posespace_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}")
+  target_include_directories(${name} PRIVATE "${POSESPACE_ROOT}")
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} posespace_options GTest::gmock
                         GTest::gtest_main)
-  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}")
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY "${POSESPACE_ROOT}")
 endfunction()
