@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+# Shell functions that turn a bare Debian 12 machine into one that has posespace built.
+# Source it:  . deploy/setup.sh
+#
+# Every function says what it does, does nothing when there is nothing to do, and stops the script
+# with a message when it fails.
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# install_packages [NAME...]: everything in deploy/packages.txt, and NAMEs.
+install_packages() {
+  local wanted missing=() name
+  command -v dpkg-query >/dev/null || fail "this needs Debian 12 (or a system with apt)"
+  wanted="$(grep -v '^#' deploy/packages.txt) $*"
+  for name in $wanted; do
+    dpkg-query -W -f '${db:Status-Abbrev}' "$name" 2>/dev/null | grep -q '^ii' || missing+=("$name")
+  done
+  if [ ${#missing[@]} -eq 0 ]; then return; fi
+  local root=""
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "installing packages needs root or sudo: ${missing[*]}"
+    root=sudo
+  fi
+  say "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+  $root apt-get update -qq || fail "apt-get update failed"
+  $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    "${missing[@]}" >/dev/null || fail "apt-get install failed"
+}
+
+# build PRESET [TARGET...]: configures and builds; all targets when none is named.
+build() {
+  local preset=$1
+  shift
+  if [ ! -f "build/$preset/build.ninja" ]; then
+    say "Configuring build/$preset"
+    cmake --preset "$preset" >"/tmp/posespace-configure.$$" 2>&1 ||
+      { cat "/tmp/posespace-configure.$$"; fail "cmake --preset $preset failed"; }
+    rm -f "/tmp/posespace-configure.$$"
+  fi
+  say "Building build/$preset"
+  local targets=() name
+  for name in "$@"; do targets+=(--target "$name"); done
+  local quiet=()
+  [ -t 1 ] || quiet=(-- --quiet)  # ninja's progress is one line on a terminal, thousands in a log
+  cmake --build --preset "$preset" ${targets[@]+"${targets[@]}"} ${quiet[@]+"${quiet[@]}"} ||
+    fail "the build failed"
+}
+
+# make_venv [REQUIREMENTS]: build/venv with the Python client, and what REQUIREMENTS lists; again
+# only when one of these changed.
+make_venv() {
+  local requirements=${1:-} stamp
+  stamp=$( (find client/python proto -type f -not -path '*/__pycache__/*' -not -path '*/build/*' \
+            -not -path '*.egg-info/*' -print0 | sort -z | xargs -0 sha256sum
+            [ -z "$requirements" ] || sha256sum "$requirements") | sha256sum | cut -d' ' -f1)
+  local stamp_file=build/venv/${requirements:+tests-}stamp
+  if [ "$(cat "$stamp_file" 2>/dev/null)" = "$stamp" ]; then return; fi
+  say "Installing the Python client into build/venv"
+  [ -x build/venv/bin/python ] || python3 -m venv build/venv || fail "python3 -m venv failed"
+  build/venv/bin/python -m pip install --quiet --disable-pip-version-check ./client/python \
+    ${requirements:+-r "$requirements"} || fail "pip install failed"
+  echo "$stamp" >"$stamp_file"
+}
