@@ -18,7 +18,14 @@ from typing import Any
 
 import numpy as np
 import posespace
-from demo_pictures import mark_placements, mesh_over_drawing, on_paper, sheet, smooth_path, weight_field
+from demo_pictures import (
+    mark_placements,
+    mesh_over_drawing,
+    on_paper,
+    sheet,
+    smooth_path,
+    weight_field,
+)
 from PIL import Image
 
 DRAWINGS = Path(__file__).resolve().parent / "drawings"
@@ -46,8 +53,10 @@ def picture(pixels: np.ndarray) -> Image.Image:
 
 def show_set(client: posespace.Client, name: str, plan: dict[str, Any], out: Path) -> None:
     """Uploads, builds, plays and pictures one set of drawings."""
-    pngs = {Path(file).stem.removeprefix(f"{name}-"): png_of(DRAWINGS / file)
-            for file in plan["drawings"]}
+    pngs = {
+        Path(file).stem.removeprefix(f"{name}-"): png_of(DRAWINGS / file)
+        for file in plan["drawings"]
+    }
     placements = {id: tuple(at) for id, at in plan["placements"].items()}
 
     session = client.create_session(display_name=plan.get("title", name))
@@ -88,8 +97,13 @@ def show_set(client: posespace.Client, name: str, plan: dict[str, Any], out: Pat
 
     animation = [on_paper(picture(session.render(at=tuple(at), size=(320, 320)))) for at in path]
     save(
-        "animation.png", animation[0], "the path, animated",
-        save_all=True, append_images=animation[1:], duration=1000 // FPS, loop=0,
+        "animation.png",
+        animation[0],
+        "the path, animated",
+        save_all=True,
+        append_images=animation[1:],
+        duration=1000 // FPS,
+        loop=0,
     )
     ids = list(mesh.vertices)
     between = {
@@ -104,14 +118,22 @@ def show_set(client: posespace.Client, name: str, plan: dict[str, Any], out: Pat
     }
     save(
         "contact-sheet.png",
-        sheet([list(drawings.values()), *between.values()], ["as drawn: " + ", ".join(ids), *between], CELL),
+        sheet(
+            [list(drawings.values()), *between.values()],
+            ["as drawn: " + ", ".join(ids), *between],
+            CELL,
+        ),
         "the drawings and what lies between them",
     )
     meshes = [
         mesh_over_drawing(drawings[id], mesh.vertices[id], mesh.triangles, mesh.boundary)
         for id in ids
     ]
-    save("meshes.png", sheet([meshes], ["one triangle list, valid in every drawing"], 2 * CELL), "the meshes")
+    save(
+        "meshes.png",
+        sheet([meshes], ["one triangle list, valid in every drawing"], 2 * CELL),
+        "the meshes",
+    )
 
     places = np.array(list(placements.values()))
     side = 2.0 * max(np.ptp(places, axis=0).max(), 1.0)

@@ -64,7 +64,7 @@ def hue(index: int, count: int) -> NDArray[np.float64]:
 
 
 def weight_field(weights: NDArray[np.float64], size: int) -> Image.Image:
-    """Each point of pose space in the mix of its poses' colours, a line at each quarter of a weight.
+    """Each point of pose space in the mix of its poses' colours; lines at quarters of a weight.
 
     weights: (size * size, N), rows of the picture from the top.
     """

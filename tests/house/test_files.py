@@ -12,7 +12,10 @@ SOURCE_SUFFIXES = {".h", ".cpp", ".py", ".proto", ".sh", ".cmake", ".svg", ".yam
 def tracked_files() -> list[Path]:
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard"],
-        cwd=ROOT, check=True, capture_output=True, text=True,
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
     ).stdout.split("\n")
     return [ROOT / name for name in listed if name and (ROOT / name).is_file()]
 
