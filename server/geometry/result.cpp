@@ -43,7 +43,9 @@ std::string_view ReasonName(ErrorCode code) {
     case ErrorCode::kSessionLimit: return "SESSION_LIMIT";
     case ErrorCode::kStreamLimit: return "STREAM_LIMIT";
     case ErrorCode::kSlotLimit: return "SLOT_LIMIT";
+    case ErrorCode::kSlotNotBound: return "SLOT_NOT_BOUND";
     case ErrorCode::kBuildQueueFull: return "BUILD_QUEUE_FULL";
+    case ErrorCode::kComputeQueueFull: return "COMPUTE_QUEUE_FULL";
     case ErrorCode::kDraining: return "DRAINING";
     case ErrorCode::kProtocolBreach: return "PROTOCOL_BREACH";
     case ErrorCode::kInternal: return "INTERNAL";

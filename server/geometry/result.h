@@ -57,7 +57,9 @@ enum class ErrorCode {
   kSessionLimit,
   kStreamLimit,
   kSlotLimit,
+  kSlotNotBound,       // an item of a stream that names a slot without a session
   kBuildQueueFull,
+  kComputeQueueFull,
   kDraining,
   kProtocolBreach,     // a stream message that makes no sense in its state
   kInternal,

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ops/config.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+
+namespace posespace {
+namespace {
+
+// POSESPACED_MAX_SESSIONS for --max-sessions.
+std::string EnvironmentName(std::string flag) {
+  flag.erase(0, 2);
+  std::transform(flag.begin(), flag.end(), flag.begin(), [](unsigned char c) {
+    return c == '-' ? '_' : static_cast<char>(std::toupper(c));
+  });
+  return "POSESPACED_" + flag;
+}
+
+template <typename T>
+CLI::Option* AddOption(CLI::App& app, const std::string& group, const std::string& flag, T& value,
+                       const std::string& help) {
+  return app.add_option(flag, value, help)
+      ->envname(EnvironmentName(flag))
+      ->capture_default_str()
+      ->group(group);
+}
+
+// A limit is at least 1: none means "no limit" by being 0.
+template <typename T>
+void AddLimit(CLI::App& app, const std::string& group, const std::string& flag, T& value,
+              const std::string& help, T most = std::numeric_limits<T>::max()) {
+  AddOption(app, group, flag, value, help)->check(CLI::Range(T{1}, most));
+}
+
+void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
+  const std::string accepted = "Limits on what is accepted";
+  AddLimit(app, accepted, "--max-request-bytes", limits.max_request_bytes, "one request",
+           std::int64_t{1} << 30);
+  AddLimit(app, accepted, "--max-image-pixels", limits.max_image_pixels, "pixels of one picture");
+  AddLimit(app, accepted, "--max-shapes", limits.max_shapes, "drawings of one session");
+  AddLimit(app, accepted, "--max-outline-points", limits.max_outline_points, "points of one ring");
+  AddLimit(app, accepted, "--max-landmarks", limits.max_landmarks,
+           "correspondences of one session");
+  AddLimit(app, accepted, "--max-mesh-vertices", limits.max_mesh_vertices, "vertices of one mesh");
+  AddLimit(app, accepted, "--max-queries", limits.max_queries, "queries of one Blend or Render");
+  AddLimit(app, accepted, "--max-render-side", limits.max_render_side, "pixels across or down");
+  const std::string running = "Limits on how much runs at once";
+  AddLimit(app, running, "--max-sessions", limits.max_sessions, "sessions");
+  AddLimit(app, running, "--max-streams", limits.max_streams, "open streams");
+  AddLimit(app, running, "--max-stream-slots", limits.max_stream_slots, "sessions of one stream",
+           65'536);
+  AddLimit(app, running, "--max-stream-items", limits.max_stream_items,
+           "items of one Play frame");
+  AddLimit(app, running, "--max-in-flight", limits.max_in_flight,
+           "Play frames of one stream read ahead of being answered", 1'024);
+  AddLimit(app, running, "--concurrent-builds", limits.concurrent_builds, "builds at once", 256);
+  AddLimit(app, running, "--build-queue", limits.build_queue, "builds waiting");
+  AddLimit(app, running, "--build-timeout", build_timeout, "seconds a build may take");
+}
+
+}  // namespace
+
+bool IsLocal(const std::string& listen) {
+  if (listen.starts_with("unix:")) return true;
+  const std::string host = listen.substr(0, listen.rfind(':'));
+  return host == "localhost" || host == "[::1]" || host.starts_with("127.");
+}
+
+Result<void> CheckConfig(const Config& config) {
+  const auto refuse = [](std::string message) {
+    return Error{ErrorCode::kInvalidOption, std::move(message), {}};
+  };
+  const bool unix_socket = config.listen.starts_with("unix:");
+  if (!unix_socket) {
+    const auto colon = config.listen.rfind(':');
+    const std::string port = colon == std::string::npos ? "" : config.listen.substr(colon + 1);
+    const bool digits = !port.empty() && port.size() <= 5 &&
+                        std::all_of(port.begin(), port.end(), [](char c) {
+                          return c >= '0' && c <= '9';
+                        });
+    if (!digits || std::stoi(port) > 65'535 || colon == 0) {
+      return refuse("--listen '" + config.listen + "' is neither ADDR:PORT nor unix:PATH");
+    }
+  }
+  if (!IsLocal(config.listen) && !config.insecure) {
+    return refuse("--listen " + config.listen +
+                  " reaches beyond this machine in plain text and without authentication; say "
+                  "--insecure if the network is trusted");
+  }
+  if (unix_socket && !config.port_file.empty()) {
+    return refuse("--port-file needs a TCP address, not " + config.listen);
+  }
+  if (config.store != "memory") {
+    return refuse("--store '" + config.store + "' is not available; this version has: memory");
+  }
+  return {};
+}
+
+Config ParseCommandLine(int argc, const char* const* argv, const std::string& version) {
+  Config config;
+  CLI::App app("posespaced: N-way morphing of 2D drawings as a gRPC service", "posespaced");
+  app.set_version_flag("--version", "posespaced " + version);
+  const std::string service = "Service";
+  AddOption(app, service, "--listen", config.listen, "ADDR:PORT (port 0: any) or unix:PATH");
+  AddOption(app, service, "--port-file", config.port_file,
+            "file that gets the port once the service answers");
+  AddOption(app, service, "--store", config.store, "where sessions are kept: memory");
+  AddOption(app, service, "--log-level", config.log_level, "what to log, to stderr")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
+  app.add_flag("--insecure", config.insecure, "allow plain text beyond this machine")
+      ->envname("POSESPACED_INSECURE")
+      ->group(service);
+  int grace = static_cast<int>(config.drain_grace.count());
+  AddOption(app, service, "--drain-grace", grace,
+            "milliseconds that open streams may take to end after SIGTERM")
+      ->check(CLI::Range(0, 600'000));
+  int build_timeout = static_cast<int>(config.limits.build_timeout.count());
+  AddLimits(app, config.limits, build_timeout);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& outcome) {
+    std::exit(app.exit(outcome) == 0 ? 0 : 2);
+  }
+  config.drain_grace = std::chrono::milliseconds(grace);
+  config.limits.build_timeout = std::chrono::seconds(build_timeout);
+  if (const auto checked = CheckConfig(config); !checked) {
+    std::cerr << "posespaced: " << checked.error().message << '\n';
+    std::exit(2);
+  }
+  return config;
+}
+
+}  // namespace posespace
