@@ -20,23 +20,29 @@ struct PoseWeightsOptions {
 //
 // Weights over poses, not over mesh vertices; the mesh solve is rigid_blend.h.
 //
-// The plane is tessellated with a near-equilateral lattice over the placements' bounding box and a
-// margin of half their diameter; the weights minimise the jumps of their gradient over the
-// lattice's edges (a discrete biharmonic energy) and, slightly, the gradient itself.  Between
-// lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1 everywhere: also
-// across the domain's rim, outside of which each point takes the weights of the closest point of
-// the rim, and at its corners.
+// The plane is tessellated with a near-equilateral lattice (pose_lattice.h) over the placements'
+// bounding box and a margin of half their diameter; the weights minimise the jumps of their gradient
+// over the lattice's edges (a discrete biharmonic energy) and, slightly, the gradient itself.
+// Between lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1 everywhere:
+// also across the domain's rim, outside of which each point takes the weights of the closest point
+// of the rim, and at its corners.
 //
 // Weights may be negative and exceed 1 (extrapolation): see shear_limit.h.
+//
+// Moving or scaling all placements together changes nothing but rounding, reordering them reorders
+// the weights.  Turning them changes the box and the lattice: inside the poses' hull that moves
+// weights by about 1e-2, near the rim by more.
 //
 // Immutable; share freely.  At() allocates nothing but its result and takes no lock.
 // Follows   Baxter, Barla, Anjyo 2009, section 4.1, equations (1) and (2).
 class PoseWeights {
  public:
   // Requires  placements N x 2, N >= 1, row i the place of pose i in pose space, any unit.
-  // Fails     kPlacementNotFinite, kPlacementsCoincide (names both rows; closer than 1e-3 of the
-  //           diameter), kCancelled.
-  // Cost      one sparse factorisation of at most some 20,000 unknowns: well under a second.
+  // Fails     kNoShapes (N = 0), kPlacementNotFinite (also when distances overflow),
+  //           kPlacementsCoincide (names both rows; closer than 1e-3 of the diameter),
+  //           kInvalidOption (levelling outside [0.01, 100]), kCancelled.
+  // Cost      one sparse factorisation of some 11,000 unknowns at most, and up to some 1,000 more per
+  //           pose that is close to another: well under a second.
   static Result<PoseWeights> Fit(const Points& placements, const PoseWeightsOptions& options = {},
                                  Progress* progress = nullptr);
 

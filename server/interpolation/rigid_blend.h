@@ -26,27 +26,39 @@ struct BlendOptions {
 // Weights -> vertices: interpolates each triangle's rotation and stretch separately and finds the
 // mesh that fits them best.
 //
-// Per triangle t and pose i, the map from a rest triangle to the pose is split as R(alpha) S.  A
-// blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights, and solves
-// min_V sum_t area_t |J_t V - target_t|^2 with one prefactored matrix; each refit replaces the
-// rotations by those of the last solution and solves again.  The rest triangle is the mean over the
-// poses of their metrics, so no pose is privileged.  Angles are unwrapped over the mesh, so parts
-// that turn by more than half a turn keep turning.  The solution is placed so that its area-weighted
-// centroid lies at the weighted mean of the poses' centroids.
+// Per triangle t and pose i, the map from a rest triangle to the pose is split as R(alpha) S, S
+// symmetric.  A blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights,
+// and solves min_V sum_t area_t |J_t V - target_t|^2, area_t of the rest triangle, with one
+// prefactored matrix; each refit replaces the rotations by those nearest to J_t S_t of the last
+// solution and solves again.
+//
+// Rest shape    The metric of a rest triangle is the mean of the poses' E_i'E_i (E_i its edge
+//               vectors in pose i), so no pose is privileged; it is turned so that pose 0 maps it
+//               without rotation.  kPaper: pose 0 itself, every area_t = 1.
+// Rotations     are unwrapped over the mesh, so parts that turn by more than half a turn keep
+//               turning.
+// Placement     The area centroid of the result lies at sum w_i c_i, c_i the area centroid of pose
+//               i.  An area centroid is sum_t a_t m_t / sum_t a_t over the mesh's own triangles:
+//               a_t signed area, m_t mean of the corners; with |a_t| instead where folds leave less
+//               than 1/1000 of the area.  (kLinear needs no placing.)
+// Parts         of a mesh that share no edge are unwrapped, those that share no vertex placed, each
+//               by itself.
 //
 // Guarantees: weights of one pose alone reproduce it; the result is unmoved by a common rigid motion
-// of all poses (it moves along) and by their order.
+// of all poses (it moves along).  It is unmoved by their order as long as all their mean rotations
+// lie within half a turn; wider spread is ambiguous, and the turns decide.
 //
 // Immutable; share freely.  At() takes no lock.
 // Follows   Baxter, Barla, Anjyo 2009, section 4.2.
 class RigidBlend {
  public:
   // `turns` adds whole turns to each pose's rotation (N entries, or none for all zero): each pose's
-  // area-weighted mean rotation relative to the rest shape is first brought into (-pi, pi], then
-  // 2 pi turns[i] is added.
+  // mean rotation relative to the rest shape, weighted with the rest areas, is first brought into
+  // (-pi, pi] (half a turn, but for rounding, is +pi), then 2 pi turns[i] is added.
   //
   // Requires  a valid mesh.
-  // Fails     kSizeMismatch (turns), kInternal (degenerate in every pose).
+  // Fails     kSizeMismatch (turns), kInternal (empty, a vertex without triangle, or a triangle that
+  //           is degenerate in every pose).
   static Result<RigidBlend> Prepare(const CompatibleMesh& mesh, std::vector<int> turns = {});
 
   // V x 2 vertices in drawing pixels for N finite weights that sum to one.
