@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/build_watch.h"
+
+#include <utility>
+
+#include "rpc/convert.h"
+
+namespace posespace {
+
+BuildWatch::BuildWatch(const Registry& registry, LiveStreams& streams,
+                       const v1::WatchBuildRequest& request)
+    : StreamWriter(Call("WatchBuild")), streams_(streams) {
+  if (auto begun = Guarded([&] { return Begin(registry, request); }); !begun) {
+    Close(std::move(begun));
+  }
+  Release();
+}
+
+Result<void> BuildWatch::Begin(const Registry& registry, const v1::WatchBuildRequest& request) {
+  const auto session = TRY(registry.Find(request.session_id()));
+  auto job = session->LatestBuild();
+  if (!job) {
+    return Error{ErrorCode::kBuildNotFound,
+                 "session '" + session->id() + "' has had no build yet", {}};
+  }
+  TRY(streams_.Add(this));
+  // A number beyond the build's own is that of an earlier build: nothing of this one has been seen.
+  const bool resumed = request.after_sequence() <= job->Status().sequence;
+  after_sequence_ = resumed ? request.after_sequence() : 0;
+  job_ = std::move(job);
+  token_ = job_->Watch([this](const BuildStatus& status) { OnChange(status); });
+  return {};
+}
+
+void BuildWatch::OnChange(const BuildStatus& status) {
+  const std::scoped_lock lock(mutex_);
+  newest_ = status;
+  if (!sending_) SendNewest();
+}
+
+void BuildWatch::OnWritten(std::size_t waiting) {
+  if (waiting > 0) return;
+  const std::scoped_lock lock(mutex_);
+  sending_ = false;
+  SendNewest();
+}
+
+void BuildWatch::SendNewest() {
+  if (!newest_) return;
+  const BuildStatus status = std::move(*std::exchange(newest_, std::nullopt));
+  if (status.sequence > after_sequence_) {
+    v1::WatchBuildResponse response;
+    ToProto(status, response.mutable_build());
+    sending_ = true;
+    Write(std::move(response));
+  }
+  if (status.ended()) Close({});
+}
+
+void BuildWatch::OnEnd() {
+  if (!job_) return;
+  job_->Unwatch(token_);
+  streams_.Remove(this);
+}
+
+}  // namespace posespace

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/convert.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "rpc/status.h"
+
+namespace posespace {
+namespace {
+
+constexpr std::size_t kTextBytes = 1'024;  // of one warning or message
+
+bool IsFinite(const v1::Point& point) { return std::isfinite(point.x()) && std::isfinite(point.y()); }
+
+Error Refusal(ErrorCode code, std::string field, std::string description) {
+  return Error{code, field + " " + description, {{field, description}}};
+}
+
+// One error for all violations: the message tells the first.
+Error Refusal(ErrorCode code, std::vector<Violation> where) {
+  std::string message = where[0].field + " " + where[0].description;
+  if (where.size() > 1) message += " (and " + std::to_string(where.size() - 1) + " more)";
+  return Error{code, std::move(message), std::move(where)};
+}
+
+Result<Points> RingFromProto(const v1::Ring& ring, const std::string& field) {
+  const int count = ring.coordinates_size();
+  if (count % 2 != 0) {
+    return Refusal(ErrorCode::kInvalidOption, field + ".coordinates",
+                   "has " + std::to_string(count) + " numbers: they should be pairs x y");
+  }
+  Points points(count / 2, 2);
+  for (int k = 0; k < count; ++k) {
+    const double value = ring.coordinates(k);
+    if (!std::isfinite(value)) {
+      return Refusal(ErrorCode::kInvalidOption, field + ".coordinates[" + std::to_string(k) + "]",
+                     "is not finite");
+    }
+    points(k / 2, k % 2) = value;
+  }
+  return points;
+}
+
+std::vector<std::uint8_t> BytesOf(const std::string& data) { return {data.begin(), data.end()}; }
+
+Result<ShapeSource> ImageFromProto(const v1::ImageSource& image) {
+  if (image.foreground() != v1::FOREGROUND_UNSPECIFIED &&
+      image.foreground() != v1::FOREGROUND_ALPHA) {
+    return Refusal(ErrorCode::kInvalidOption, "image.foreground",
+                   "is " + std::to_string(image.foreground()) + ", which is not known here");
+  }
+  ImageSource source;
+  if (image.has_threshold()) source.threshold = image.threshold();
+  if (source.threshold < 1 || source.threshold > 255) {
+    return Refusal(ErrorCode::kInvalidOption, "image.threshold",
+                   "is " + std::to_string(source.threshold) + ", not 1 to 255");
+  }
+  source.data = BytesOf(image.data());
+  return ShapeSource(std::move(source));
+}
+
+Result<ShapeSource> PolygonFromProto(const v1::PolygonSource& polygon) {
+  PolygonSource source;
+  source.outer = TRY(RingFromProto(polygon.outer(), "polygon.outer"));
+  for (int k = 0; k < polygon.holes_size(); ++k) {
+    source.holes.push_back(
+        TRY(RingFromProto(polygon.holes(k), "polygon.holes[" + std::to_string(k) + "]")));
+  }
+  source.texture = BytesOf(polygon.texture());
+  return ShapeSource(std::move(source));
+}
+
+Result<double> InRange(double value, double least, double most, const std::string& field) {
+  if (value >= least && value <= most) return value;
+  return Refusal(ErrorCode::kInvalidOption, field,
+                 "is " + std::to_string(value) + ", not " + std::to_string(least) + " to " +
+                     std::to_string(most));
+}
+
+void ToProto(const Point& point, v1::Point* out) {
+  out->set_x(point.x());
+  out->set_y(point.y());
+}
+
+void ToProto(const Points& ring, v1::Ring* out) {
+  out->mutable_coordinates()->Assign(ring.data(), ring.data() + ring.size());
+}
+
+// Outer ring first, holes after it.
+void ToProto(const Outline& outline, google::protobuf::RepeatedPtrField<v1::Ring>* rings) {
+  ToProto(outline.outer, rings->Add());
+  for (const Points& hole : outline.holes) ToProto(hole, rings->Add());
+}
+
+void ToProto(std::chrono::system_clock::time_point time, google::protobuf::Timestamp* out) {
+  const auto since = time.time_since_epoch();
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  out->set_seconds(seconds.count());
+  out->set_nanos(static_cast<std::int32_t>(std::chrono::nanoseconds(since - seconds).count()));
+}
+
+v1::BuildState ToProto(BuildState state) {
+  switch (state) {
+    case BuildState::kQueued: return v1::BUILD_STATE_QUEUED;
+    case BuildState::kRunning: return v1::BUILD_STATE_RUNNING;
+    case BuildState::kSucceeded: return v1::BUILD_STATE_SUCCEEDED;
+    case BuildState::kFailed: return v1::BUILD_STATE_FAILED;
+    case BuildState::kCancelled: return v1::BUILD_STATE_CANCELLED;
+  }
+  return v1::BUILD_STATE_UNSPECIFIED;
+}
+
+}  // namespace
+
+Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
+  switch (request.source_case()) {
+    case v1::PutShapeRequest::kImage:
+      return ImageFromProto(request.image());
+    case v1::PutShapeRequest::kPolygon:
+      return PolygonFromProto(request.polygon());
+    case v1::PutShapeRequest::SOURCE_NOT_SET:
+      break;
+  }
+  return Refusal(ErrorCode::kShapeSourceMissing, "source", "is missing: give an image or a polygon");
+}
+
+Result<std::vector<Correspondence>> CorrespondencesFromProto(
+    const v1::SetCorrespondencesRequest& request) {
+  std::vector<Correspondence> tuples;
+  std::vector<Violation> empty, not_finite;
+  for (int t = 0; t < request.tuples_size(); ++t) {
+    const std::string field = "tuples[" + std::to_string(t) + "].points";
+    Correspondence tuple;
+    for (const auto& [shape_id, point] : request.tuples(t).points()) {
+      tuple.emplace(shape_id, Point(point.x(), point.y()));
+    }
+    if (tuple.empty()) empty.push_back({field, "is empty"});
+    for (const auto& [shape_id, point] : tuple) {
+      if (!point.allFinite()) {
+        not_finite.push_back({field + "['" + shape_id + "']", "is not finite"});
+      }
+    }
+    tuples.push_back(std::move(tuple));
+  }
+  if (!empty.empty()) return Refusal(ErrorCode::kInvalidOption, std::move(empty));
+  if (!not_finite.empty()) return Refusal(ErrorCode::kLandmarkNotFinite, std::move(not_finite));
+  return tuples;
+}
+
+Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) {
+  Placements placements;
+  std::vector<Violation> unusable, not_finite;
+  for (int k = 0; k < request.placements_size(); ++k) {
+    const v1::Placement& placement = request.placements(k);
+    const std::string field = "placements[" + std::to_string(k) + "]";
+    if (!placement.has_at()) {
+      unusable.push_back({field + ".at", "is missing"});
+    } else if (!IsFinite(placement.at())) {
+      not_finite.push_back({field + ".at", "is not finite"});
+    }
+    const Point at(placement.at().x(), placement.at().y());
+    if (!placements.emplace(placement.shape_id(), at).second) {
+      unusable.push_back({field + ".shape_id", "places '" + placement.shape_id() + "' again"});
+    }
+  }
+  if (!unusable.empty()) return Refusal(ErrorCode::kInvalidOption, std::move(unusable));
+  if (!not_finite.empty()) return Refusal(ErrorCode::kPlacementNotFinite, std::move(not_finite));
+  return placements;
+}
+
+Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options) {
+  BuildRequest request;
+  if (options.has_tolerance()) {
+    request.tolerance = TRY(InRange(options.tolerance(), 0.001, 0.2, "options.tolerance"));
+  }
+  if (options.has_target_edge_length()) {
+    request.target_edge_length =
+        TRY(InRange(options.target_edge_length(), 0.02, 1.0, "options.target_edge_length"));
+  }
+  return request;
+}
+
+void ToProto(const SessionView& view, v1::Session* session) {
+  session->set_id(view.id);
+  session->set_display_name(view.display_name);
+  session->mutable_labels()->insert(view.labels.begin(), view.labels.end());
+  session->mutable_shape_ids()->Assign(view.shape_ids.begin(), view.shape_ids.end());
+  for (const Correspondence& tuple : view.correspondences) {
+    auto& points = *session->add_correspondences()->mutable_points();
+    for (const auto& [shape_id, point] : tuple) ToProto(point, &points[shape_id]);
+  }
+  for (const std::string& shape_id : view.shape_ids) {
+    const auto place = view.placements.find(shape_id);
+    if (place == view.placements.end()) continue;
+    v1::Placement* const placement = session->add_placements();
+    placement->set_shape_id(shape_id);
+    ToProto(place->second, placement->mutable_at());
+  }
+  session->set_placements_are_default(view.placements_are_default);
+  session->set_etag(view.etag);
+  ToProto(view.created, session->mutable_create_time());
+  ToProto(view.updated, session->mutable_update_time());
+  session->set_revision(view.revision);
+  if (view.build) ToProto(*view.build, session->mutable_build());
+}
+
+void ToProto(const Drawing& drawing, v1::Shape* shape) {
+  shape->set_id(drawing.id);
+  shape->set_width(drawing.width);
+  shape->set_height(drawing.height);
+  ToProto(drawing.outline, shape->mutable_outline());
+  shape->set_holes_filled(drawing.outline.holes_filled);
+  for (const std::string& warning : drawing.outline.warnings) {
+    shape->add_warnings(CleanText(warning, kTextBytes));
+  }
+  ToProto(drawing.texture, shape->mutable_texture());
+}
+
+void ToProto(const BuildStatus& status, v1::Build* build) {
+  build->set_id(status.id);
+  build->set_state(ToProto(status.state));
+  build->set_stage(status.stage);
+  build->set_fraction(status.fraction);
+  build->set_sequence(status.sequence);
+  if (status.pose_space) ToProto(*status.pose_space, build->mutable_report());
+  if (status.error) {
+    const Error error = Shown(*status.error);
+    build->mutable_error()->set_reason(std::string(ReasonName(error.code)));
+    build->mutable_error()->set_message(CleanText(error.message, kTextBytes));
+    for (const Violation& violation : error.where) {
+      build->mutable_error()->add_fields(CleanText(violation.field, kTextBytes));
+    }
+  }
+}
+
+void ToProto(const Texture& texture, v1::TexturePlacement* placement) {
+  ToProto(texture.origin, placement->mutable_origin());
+  placement->set_scale(texture.scale);
+  placement->set_width(texture.image.width);
+  placement->set_height(texture.image.height);
+}
+
+void ToProto(const PoseSpace& pose_space, v1::BuildReport* report) {
+  const MappingReport& mapping = pose_space.report();
+  const auto& drawings = pose_space.drawings();
+  report->set_revision(pose_space.revision());
+  report->set_vertices(pose_space.mesh().num_vertices());
+  report->set_triangles(pose_space.mesh().num_triangles());
+  report->set_outline_vertices(mapping.outline_vertices);
+  report->set_steiner_vertices(mapping.steiner_vertices);
+  report->set_min_angle(mapping.min_angle);
+  (*report->mutable_levels())[mapping.used_overlay ? "overlay" : "zero_steiner"] = 1;
+  for (const auto& [stage, seconds] : mapping.seconds) {
+    (*report->mutable_seconds())[stage] = seconds;
+  }
+  for (std::size_t k = 0; k < drawings.size() && k < mapping.confidence.size(); ++k) {
+    (*report->mutable_confidence())[drawings[k]->id] = mapping.confidence[k];
+  }
+  for (const std::string& warning : pose_space.warnings()) {
+    report->add_warnings(CleanText(warning, kTextBytes));
+  }
+}
+
+void ToProto(const PoseSpace& pose_space, v1::Mesh* mesh) {
+  const CompatibleMesh& compatible = pose_space.mesh();
+  mesh->set_revision(pose_space.revision());
+  mesh->mutable_triangles()->Assign(
+      compatible.triangles.data(), compatible.triangles.data() + compatible.triangles.size());
+  for (const std::vector<int>& loop : compatible.boundary) {
+    mesh->add_boundary()->mutable_vertices()->Assign(loop.begin(), loop.end());
+  }
+  for (std::size_t k = 0; k < pose_space.drawings().size(); ++k) {
+    const Drawing& drawing = *pose_space.drawings()[k];
+    const Points& pose = compatible.poses[k];
+    v1::PoseMesh* const out = mesh->add_poses();
+    out->set_shape_id(drawing.id);
+    out->mutable_vertices()->Assign(pose.data(), pose.data() + pose.size());
+    ToProto(drawing.outline, out->mutable_outlines());
+    out->set_turns(pose_space.turns()[k]);
+    ToProto(drawing.texture, out->mutable_texture());
+  }
+  mesh->mutable_landmarks()->Assign(compatible.landmarks.begin(), compatible.landmarks.end());
+  ToProto(pose_space, mesh->mutable_report());
+}
+
+}  // namespace posespace

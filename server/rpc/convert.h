@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_RPC_CONVERT_H_
+#define POSESPACE_RPC_CONVERT_H_
+
+#include <string>
+#include <vector>
+
+#include "geometry/result.h"
+#include "posespace/v1/geometry.pb.h"
+#include "posespace/v1/session_service.pb.h"
+#include "session/build_job.h"
+#include "session/pose_space.h"
+#include "session/session.h"
+
+// Authoring messages <-> session types; queries and frames are in query_convert.h.  Reading checks
+// every number: finite, in range, of the right count, enums known.  All functions are pure.
+
+namespace posespace {
+
+// Fails  kShapeSourceMissing, kInvalidOption (threshold, foreground, odd or non-finite coordinates).
+Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request);
+
+// Fails  kLandmarkNotFinite, kInvalidOption (a tuple without points); all faults at once.
+Result<std::vector<Correspondence>> CorrespondencesFromProto(
+    const v1::SetCorrespondencesRequest& request);
+
+// Fails  kPlacementNotFinite, kInvalidOption (no place, a shape placed twice); all faults at once.
+Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request);
+
+// Fails  kInvalidOption (out of the range that session_service.proto gives).
+Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options);
+
+void ToProto(const SessionView& view, v1::Session* session);
+void ToProto(const Drawing& drawing, v1::Shape* shape);
+void ToProto(const BuildStatus& status, v1::Build* build);
+void ToProto(const Texture& texture, v1::TexturePlacement* placement);
+void ToProto(const PoseSpace& pose_space, v1::BuildReport* report);
+void ToProto(const PoseSpace& pose_space, v1::Mesh* mesh);
+
+}  // namespace posespace
+
+#endif  // POSESPACE_RPC_CONVERT_H_

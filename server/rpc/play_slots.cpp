@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/play_slots.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "rpc/call.h"
+#include "rpc/query_convert.h"
+#include "rpc/status.h"
+
+namespace posespace {
+namespace {
+
+constexpr std::size_t kMessageBytes = 512;
+
+// Fills `reason` and `error_message` of an answer.
+template <typename Answer>
+void SetError(Error error, Answer* answer) {
+  const Error shown = Shown(std::move(error));
+  answer->set_reason(std::string(ReasonName(shown.code)));
+  answer->set_error_message(CleanText(shown.message, kMessageBytes));
+}
+
+// Fills `revision`, `vertex_count` and `shape_ids`.
+template <typename Answer>
+void SetRevision(const PoseSpace& pose_space, Answer* answer) {
+  answer->set_revision(pose_space.revision());
+  answer->set_vertex_count(pose_space.mesh().num_vertices());
+  for (const auto& drawing : pose_space.drawings()) answer->add_shape_ids(drawing->id);
+}
+
+}  // namespace
+
+PlaySlots::PlaySlots(const Registry& registry, const Limits& limits)
+    : registry_(registry), limits_(limits) {}
+
+Result<void> PlaySlots::Answer(const v1::PlayRequest& request, const Send& send) {
+  switch (request.message_case()) {
+    case v1::PlayRequest::kBind:
+      Bind(request.bind(), send);
+      return {};
+    case v1::PlayRequest::kUnbind:
+      slots_.erase(request.unbind().slot());
+      return {};
+    case v1::PlayRequest::kTick:
+      FollowRevisions(send);
+      return Tick(request.tick(), send);
+    case v1::PlayRequest::MESSAGE_NOT_SET:
+      break;
+  }
+  return Error{ErrorCode::kProtocolBreach, "a message without bind, unbind or tick", {}};
+}
+
+void PlaySlots::Bind(const v1::PlayRequest::Bind& bind, const Send& send) {
+  v1::PlayResponse response;
+  v1::PlayResponse::Bound* const bound = response.mutable_bound();
+  bound->set_slot(bind.slot());
+  slots_.erase(bind.slot());
+  if (auto slot = Find(bind)) {
+    SetRevision(*slot->pose_space, bound);
+    slots_.emplace(bind.slot(), std::move(*slot));
+  } else {
+    SetError(std::move(slot).error(), bound);
+  }
+  send(std::move(response));
+}
+
+Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) const {
+  if (bind.slot() >= static_cast<std::uint32_t>(limits_.max_stream_slots)) {
+    return Error{ErrorCode::kSlotLimit,
+                 "slot " + std::to_string(bind.slot()) + " is not below " +
+                     std::to_string(limits_.max_stream_slots), {}};
+  }
+  Slot slot;
+  slot.session = TRY(registry_.Find(bind.session_id()));
+  slot.pose_space = TRY(slot.session->Built());
+  slot.pinned = !bind.pinned_revision().empty();
+  TRY(CheckRevision(*slot.pose_space, bind.pinned_revision()));
+  return slot;
+}
+
+void PlaySlots::FollowRevisions(const Send& send) {
+  for (auto entry = slots_.begin(); entry != slots_.end();) {
+    auto& [number, slot] = *entry;
+    const bool deleted = slot.session->closed();
+    auto newest = slot.session->Built();
+    const bool moved = !slot.pinned && newest && *newest != slot.pose_space;
+    if (deleted || moved) {
+      v1::PlayResponse response;
+      response.mutable_revision_changed()->set_slot(number);
+      if (!deleted) {
+        slot.pose_space = std::move(*newest);
+        SetRevision(*slot.pose_space, response.mutable_revision_changed());
+      }
+      send(std::move(response));
+    }
+    entry = deleted ? slots_.erase(entry) : std::next(entry);
+  }
+}
+
+Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Send& send) {
+  if (tick.items_size() > limits_.max_stream_items) {
+    return Error{ErrorCode::kProtocolBreach,
+                 "frame " + std::to_string(tick.frame_id()) + " has " +
+                     std::to_string(tick.items_size()) + " items; at most " +
+                     std::to_string(limits_.max_stream_items) + " are taken", {}};
+  }
+  v1::PlayResponse response;
+  v1::PlayResponse::FrameResult* const result = response.mutable_frame_result();
+  result->set_frame_id(tick.frame_id());
+  result->mutable_items()->Reserve(tick.items_size());
+  for (const v1::PlayRequest::Item& item : tick.items()) {
+    Blend(item, tick.with_weights(), result->add_items());
+  }
+  send(std::move(response));
+  return {};
+}
+
+void PlaySlots::Blend(const v1::PlayRequest::Item& item, bool with_weights,
+                      v1::PlayResponse::ItemResult* result) const {
+  result->set_slot(item.slot());
+  result->set_tag(item.tag());
+  const auto slot = slots_.find(item.slot());
+  auto frame = Guarded([&]() -> Result<Frame> {
+    if (slot == slots_.end()) {
+      return Error{ErrorCode::kSlotNotBound,
+                   "slot " + std::to_string(item.slot()) + " has no session", {}};
+    }
+    return BlendQuery(*slot->second.pose_space, item.query(), "query", /*weights_only=*/false);
+  });
+  if (frame) {
+    ToProto(*frame, with_weights, result->mutable_frame());
+  } else {
+    SetError(std::move(frame).error(), result);
+  }
+}
+
+double PlaySlots::EstimateMicroseconds(const v1::PlayRequest& request) const {
+  double sum = 0.0;
+  for (const v1::PlayRequest::Item& item : request.tick().items()) {
+    const auto slot = slots_.find(item.slot());
+    if (slot == slots_.end()) continue;
+    sum += posespace::EstimateMicroseconds(*slot->second.pose_space, item.query(),
+                                           /*weights_only=*/false);
+  }
+  return sum;
+}
+
+}  // namespace posespace

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_RPC_PLAY_SLOTS_H_
+#define POSESPACE_RPC_PLAY_SLOTS_H_
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "geometry/result.h"
+#include "posespace/v1/pose_service.pb.h"
+#include "session/registry.h"
+
+namespace posespace {
+
+// Which sessions a Play stream has bound to its slots, and what it answers to each message.  It
+// knows no gRPC; what is waiting, in flight or ending is play_stream.h.  One per stream; one call at a
+// time.
+//
+// A slot keeps its pose space until the session has a newer one: results of one message are of one
+// revision, and RevisionChanged comes between two messages.
+class PlaySlots {
+ public:
+  // Takes the answers, in order.
+  using Send = std::function<void(v1::PlayResponse)>;
+
+  PlaySlots(const Registry& registry, const Limits& limits);
+
+  // Answers one message.  What is wrong with a slot or an item is in the answer; kProtocolBreach ends
+  // the stream.
+  Result<void> Answer(const v1::PlayRequest& request, const Send& send);
+
+  // Moves every slot to its session's newest revision and says which have changed.
+  void FollowRevisions(const Send& send);
+
+  // About how long Answer takes, in microseconds.
+  double EstimateMicroseconds(const v1::PlayRequest& request) const;
+
+ private:
+  struct Slot {
+    std::shared_ptr<Session> session;
+    std::shared_ptr<const PoseSpace> pose_space;
+    bool pinned = false;
+  };
+
+  Result<Slot> Find(const v1::PlayRequest::Bind& bind) const;
+  void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
+  Result<void> Tick(const v1::PlayRequest::Tick& tick, const Send& send);
+  void Blend(const v1::PlayRequest::Item& item, bool with_weights,
+             v1::PlayResponse::ItemResult* result) const;
+
+  const Registry& registry_;
+  const Limits limits_;
+  std::map<std::uint32_t, Slot> slots_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_RPC_PLAY_SLOTS_H_

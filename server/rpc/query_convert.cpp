@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/query_convert.h"
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+namespace posespace {
+namespace {
+
+Error Refusal(ErrorCode code, std::string field, std::string description) {
+  return Error{code, field + " " + description, {{field, description}}};
+}
+
+Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
+  BlendOptions blend;
+  switch (options.method()) {
+    case v1::BLEND_METHOD_UNSPECIFIED:
+    case v1::BLEND_METHOD_RIGID: blend.method = BlendMethod::kRigid; break;
+    case v1::BLEND_METHOD_LINEAR: blend.method = BlendMethod::kLinear; break;
+    case v1::BLEND_METHOD_PAPER: blend.method = BlendMethod::kPaper; break;
+    default:
+      return Refusal(ErrorCode::kInvalidOption, "options.method",
+                     "is " + std::to_string(options.method()) + ", which is not known here");
+  }
+  switch (options.shear_limit()) {
+    case v1::SHEAR_LIMIT_UNSPECIFIED:
+      blend.shear_limit =
+          blend.method == BlendMethod::kPaper ? ShearLimit::kHermite : ShearLimit::kBand;
+      break;
+    case v1::SHEAR_LIMIT_BAND: blend.shear_limit = ShearLimit::kBand; break;
+    case v1::SHEAR_LIMIT_HERMITE: blend.shear_limit = ShearLimit::kHermite; break;
+    case v1::SHEAR_LIMIT_OFF: blend.shear_limit = ShearLimit::kOff; break;
+    default:
+      return Refusal(ErrorCode::kInvalidOption, "options.shear_limit",
+                     "is " + std::to_string(options.shear_limit()) + ", which is not known here");
+  }
+  if (options.has_refits()) blend.refits = options.refits();
+  if (blend.refits < 0 || blend.refits > 3) {
+    return Refusal(ErrorCode::kInvalidOption, "options.refits",
+                   "is " + std::to_string(blend.refits) + ", not 0 to 3");
+  }
+  return blend;
+}
+
+}  // namespace
+
+Result<Query> QueryFromProto(const v1::Query& query) {
+  Query result;
+  switch (query.position_case()) {
+    case v1::Query::kAt: {
+      const Point at(query.at().x(), query.at().y());
+      if (!at.allFinite()) return Refusal(ErrorCode::kPoseNotFinite, "at", "is not finite");
+      result.position = at;
+      break;
+    }
+    case v1::Query::kWeights: {
+      const auto& values = query.weights().values();
+      Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
+      if (!weights.allFinite()) {
+        return Refusal(ErrorCode::kWeightsNotFinite, "weights", "are not all finite");
+      }
+      result.position = std::move(weights);
+      break;
+    }
+    case v1::Query::POSITION_NOT_SET:
+      return Refusal(ErrorCode::kInvalidOption, "position", "is missing: give at or weights");
+  }
+  result.options = TRY(BlendOptionsFromProto(query.options()));
+  result.sigma = query.options().sigma();
+  if (!(result.sigma >= 0.0 && result.sigma <= 1.0)) {
+    return Refusal(ErrorCode::kInvalidOption, "options.sigma",
+                   "is " + std::to_string(result.sigma) + ", not 0 to 1");
+  }
+  return result;
+}
+
+Result<void> CheckQueryCount(int count, int most) {
+  if (count == 0) return Refusal(ErrorCode::kInvalidOption, "queries", "is empty");
+  if (count <= most) return {};
+  return Refusal(ErrorCode::kTooManyQueries, "queries",
+                 "has " + std::to_string(count) + " entries; at most " + std::to_string(most) +
+                     " are taken");
+}
+
+Result<void> CheckRevision(const PoseSpace& pose_space, const std::string& revision) {
+  if (revision.empty() || revision == pose_space.revision()) return {};
+  return Error{ErrorCode::kRevisionNotFound,
+               "revision '" + revision + "' is not current; " + pose_space.revision() + " is", {}};
+}
+
+std::string QueryField(int index) { return "queries[" + std::to_string(index) + "]"; }
+
+Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
+                         const std::string& field, bool weights_only) {
+  auto parsed = QueryFromProto(query);
+  auto frame = parsed ? pose_space.Blend(*parsed, weights_only)
+                      : Result<Frame>(std::move(parsed).error());
+  if (frame) return frame;
+
+  Error error = std::move(frame).error();
+  if (error.where.empty()) {
+    error.where.push_back({query.has_weights() ? "weights" : "at", error.message});
+  }
+  for (Violation& violation : error.where) violation.field = field + "." + violation.field;
+  error.message = field + ": " + error.message;
+  return error;
+}
+
+double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query,
+                            bool weights_only) {
+  constexpr double kWeights = 2.0;          // the weight field and the limits
+  constexpr double kVertexAndSolve = 0.11;  // assembling and solving, a vertex
+  if (weights_only) return kWeights;
+  const int solves = query.options().has_refits() ? 1 + query.options().refits() : 4;
+  return kWeights + kVertexAndSolve * solves * pose_space.mesh().num_vertices();
+}
+
+void ToProto(const Frame& frame, bool with_weights, v1::Frame* out) {
+  if (with_weights) {
+    out->mutable_weights()->Assign(frame.weights.data(),
+                                   frame.weights.data() + frame.weights.size());
+    out->mutable_texture_weights()->Assign(
+        frame.texture_weights.data(), frame.texture_weights.data() + frame.texture_weights.size());
+  }
+  out->set_folds(frame.folds);
+  static_assert(std::endian::native == std::endian::little, "vertices travel little-endian");
+  const std::size_t count = static_cast<std::size_t>(frame.vertices.size());
+  std::string& bytes = *out->mutable_vertices();
+  bytes.resize(count * sizeof(float));
+  for (std::size_t k = 0; k < count; ++k) {
+    const float value = static_cast<float>(frame.vertices.data()[k]);
+    std::memcpy(bytes.data() + k * sizeof(float), &value, sizeof(float));
+  }
+}
+
+Result<View> ViewFromProto(const v1::RenderRequest& request, const PoseSpace& pose_space,
+                           int max_side) {
+  for (const auto& [field, side] :
+       {std::pair("width", request.width()), std::pair("height", request.height())}) {
+    if (side < 1 || side > max_side) {
+      return Refusal(ErrorCode::kInvalidOption, field,
+                     "is " + std::to_string(side) + ", not 1 to " + std::to_string(max_side));
+    }
+  }
+  if (request.format() != v1::IMAGE_FORMAT_UNSPECIFIED &&
+      request.format() != v1::IMAGE_FORMAT_PNG && request.format() != v1::IMAGE_FORMAT_RGBA) {
+    return Refusal(ErrorCode::kInvalidOption, "format",
+                   "is " + std::to_string(request.format()) + ", which is not known here");
+  }
+  if (!request.has_view()) return pose_space.DefaultView(request.width(), request.height());
+
+  const v1::Box& box = request.view();
+  const Point low(box.x(), box.y());
+  const Point high(box.x() + box.width(), box.y() + box.height());
+  // Beyond 1e9 a double no longer places pixels exactly enough to draw them.
+  constexpr double kFarthest = 1e9;
+  const bool usable = box.width() >= 1e-6 && box.height() >= 1e-6 &&
+                      low.cwiseAbs().maxCoeff() <= kFarthest &&
+                      high.cwiseAbs().maxCoeff() <= kFarthest;
+  if (!usable || !low.allFinite() || !high.allFinite()) {
+    return Refusal(ErrorCode::kInvalidOption, "view",
+                   "is not a box with finite corners and a size greater than 0");
+  }
+  return FitView(low, high, request.width(), request.height());
+}
+
+}  // namespace posespace
