@@ -13,16 +13,16 @@
 namespace posespace {
 
 struct OutlineOptions {
-  int threshold = 128;        // alpha >= threshold is painted, 1 .. 255; applied before scaling
-  int working_size = 512;     // the longer side, working pixels, at which outlines are traced
-  int max_points = 20'000;    // of one ring
+  int threshold = 128;      // alpha >= threshold is painted, 1 .. 255; applied before scaling
+  int working_size = 512;   // the longer side, working pixels, at which outlines are traced
+  int max_points = 20'000;  // of one ring
 };
 
 // What the mapping needs of a drawing.
 struct Outline {
-  Points outer;                   // K x 2, simple, positively oriented, drawing pixels
-  std::vector<Points> holes;      // simple, negatively oriented; filled by the mesh, kept by alpha
-  Eigen::MatrixXd colours;        // K x 3: RGB in [0, 1] just inside outer row k; 0 rows: none
+  Points outer;               // K x 2, simple, positively oriented, drawing pixels
+  std::vector<Points> holes;  // simple, negatively oriented; filled by the mesh, kept by alpha
+  Eigen::MatrixXd colours;    // K x 3: RGB in [0, 1] just inside outer row k; 0 rows: none
   int holes_filled = 0;
   std::vector<std::string> warnings;  // what was done to the drawing, for a person to read
 };

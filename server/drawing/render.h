@@ -11,28 +11,38 @@
 
 namespace posespace {
 
-// A texture made ready for mixing: premultiplied alpha, linear light, float.
-// Immutable; share freely.  16 bytes a texel.
+// A texture made ready for mixing: premultiplied alpha, linear light, float, with its reductions
+// to a half, a quarter, ... so that small pictures of it do not shimmer.
+// Immutable; share freely.  21 bytes a texel.
 class RenderTexture {
  public:
   explicit RenderTexture(const Texture& texture);
 
   // Premultiplied linear RGBA at a place in drawing pixels, bilinear; transparent outside.
-  Eigen::Array4f At(const Point& place) const;
+  // Level 0 is the texture itself, each next one half as fine.
+  Eigen::Array4f At(const Point& place, int level = 0) const;
+
+  // The level whose texels are nearest in size to pixels of `length` drawing pixels a side.
+  int LevelFor(double length) const;
 
  private:
-  int width_;
-  int height_;
+  struct Level {
+    int width;
+    int height;
+    double scale;               // texels of this level per drawing pixel
+    std::vector<float> texels;  // RGBA
+  };
+
   Point origin_;
-  double scale_;
-  std::vector<float> texels_;
+  std::vector<Level> levels_;
 };
 
 // One pose's part in a picture.
 struct RenderLayer {
   const Points* pose;            // V x 2: where the mesh lies in this pose's drawing
   const RenderTexture* texture;  // may be shared with other layers
-  double weight;                 // texture weight w''; below 1/512 the layer is skipped
+  double weight;                 // texture weight w''; a layer below 1/512 is skipped, and its
+                                 // weight divided among the others
 };
 
 // Which part of the plane a picture shows: pixel = (p - origin) * scale.
@@ -50,9 +60,11 @@ View FitView(const Point& low, const Point& high, int width, int height);
 //
 // Each output pixel whose centre lies in a triangle takes, from every layer, the texel at the same
 // barycentric place; mixed premultiplied in linear light, delivered as straight sRGB with alpha.
-// Triangles share their edges by a top-left rule: no seams, no pixel drawn twice by neighbours; where the
-// mesh overlaps itself, later triangles lie on top.  Silhouettes are antialiased by the textures'
-// own alpha, since the mesh encloses every painted pixel.
+// Triangles share their edges by a top-left rule: no seams, no pixel drawn twice by neighbours;
+// where the mesh overlaps itself, later triangles lie on top (where they are transparent, what is
+// below shows).  Silhouettes are antialiased by the textures' own alpha, since the mesh encloses
+// every painted pixel.  Coverage is decided on vertices rounded to 1/1024 output pixel.  A layer
+// shown smaller than its texture is taken from one reduction of it, chosen for the whole mesh.
 //
 // Requires  vertices V x 2, finite; each layer's pose has V rows.
 // Cost      O(pixels covered x layers).  Pure; call from any thread.

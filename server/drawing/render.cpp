@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drawing/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "drawing/colour_space.h"
+
+namespace posespace {
+namespace {
+
+constexpr double kSmallestWeight = 1.0 / 512.0;
+
+// Output coordinates in fixed point.  Edge functions of coordinates within +-2^29 stay below
+// 2^62: exact in 64 bits.
+constexpr double kSubpixels = 1024.0;
+constexpr double kFurthest = 1 << 19;  // output pixels
+
+using Fixed = std::array<std::int64_t, 2>;
+
+Fixed ToFixed(const Point& p, const View& view) {
+  Fixed fixed;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double pixel = (p[axis] - view.origin[axis]) * view.scale;
+    fixed[axis] = std::llround(std::clamp(pixel, -kFurthest, kFurthest) * kSubpixels);
+  }
+  return fixed;
+}
+
+std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {  // b > 0
+  return a >= 0 ? a / b : -((-a + b - 1) / b);
+}
+
+// cross(b - a, p - a) at pixel centres: origin + x * along_x + y * along_y.
+struct EdgeFunction {
+  EdgeFunction(const Fixed& a, const Fixed& b) {
+    const std::int64_t dx = b[0] - a[0], dy = b[1] - a[1];
+    const std::int64_t half = static_cast<std::int64_t>(kSubpixels) / 2;
+    along_x = -dy * static_cast<std::int64_t>(kSubpixels);
+    along_y = dx * static_cast<std::int64_t>(kSubpixels);
+    origin = dx * (half - a[1]) - dy * (half - a[0]);
+    // A centre exactly on the edge belongs to the triangle right of it, or below it.
+    includes_zero = dy < 0 || (dy == 0 && dx > 0);
+  }
+  std::int64_t origin, along_x, along_y;
+  bool includes_zero;
+};
+
+// The pixels [first, last) of a row whose centres lie in the triangle, within [0, width).
+std::pair<std::int64_t, std::int64_t> CoveredSpan(const std::array<EdgeFunction, 3>& edges, int y,
+                                                  int width) {
+  std::int64_t first = 0, last = width;
+  for (const EdgeFunction& edge : edges) {
+    // Needed: value + x * along_x >= 0.
+    const std::int64_t value = edge.origin + y * edge.along_y - (edge.includes_zero ? 0 : 1);
+    if (edge.along_x > 0) {
+      first = std::max(first, -FloorDivide(value, edge.along_x));
+    } else if (edge.along_x < 0) {
+      last = std::min(last, FloorDivide(value, -edge.along_x) + 1);
+    } else if (value < 0) {
+      return {0, 0};
+    }
+  }
+  return {first, last};
+}
+
+// A layer that takes part in the picture.
+struct ActiveLayer {
+  const Points* pose;
+  const RenderTexture* texture;
+  float weight;
+  int level;
+};
+
+double TotalArea(const Triangles& triangles, const Points& vertices) {
+  double twice = 0.0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    twice += std::abs(Cross(vertices.row(triangles(t, 0)).transpose(),
+                            vertices.row(triangles(t, 1)).transpose(),
+                            vertices.row(triangles(t, 2)).transpose()));
+  }
+  return 0.5 * twice;
+}
+
+std::vector<ActiveLayer> ActiveLayers(const Triangles& triangles, const Points& vertices,
+                                      std::span<const RenderLayer> layers, const View& view) {
+  double total = 0.0, active = 0.0;
+  for (const RenderLayer& layer : layers) {
+    if (layer.weight > 0.0) total += layer.weight;
+    if (layer.weight >= kSmallestWeight) active += layer.weight;
+  }
+  const double drawn_area = TotalArea(triangles, vertices) * view.scale * view.scale;
+  std::vector<ActiveLayer> result;
+  for (const RenderLayer& layer : layers) {
+    if (!(layer.weight >= kSmallestWeight)) continue;
+    const double pixel = std::sqrt(TotalArea(triangles, *layer.pose) / drawn_area);
+    result.push_back({layer.pose, layer.texture, static_cast<float>(layer.weight * total / active),
+                      layer.texture->LevelFor(pixel)});
+  }
+  return result;
+}
+
+// Premultiplied linear picture under construction.
+class Canvas {
+ public:
+  explicit Canvas(const View& view)
+      : width_(view.width),
+        texels_(static_cast<std::size_t>(view.width) * view.height, Eigen::Array4f::Zero()) {}
+
+  void Over(std::int64_t x, int y, const Eigen::Array4f& colour) {
+    Eigen::Array4f& below = texels_[static_cast<std::size_t>(y) * width_ + x];
+    below = colour + (1.0f - std::min(colour[3], 1.0f)) * below;
+  }
+
+  Image ToImage(const View& view) const {
+    Image image{view.width, view.height, std::vector<std::uint8_t>(4 * texels_.size(), 0)};
+    std::uint8_t* to = image.rgba.data();
+    for (const Eigen::Array4f& texel : texels_) {
+      const float alpha = std::min(texel[3], 1.0f);
+      const auto opacity = static_cast<std::uint8_t>(255.0f * alpha + 0.5f);
+      if (opacity > 0) {
+        for (int c = 0; c < 3; ++c) to[c] = SrgbFromLinear(texel[c] / texel[3]);
+        to[3] = opacity;
+      }
+      to += 4;
+    }
+    return image;
+  }
+
+ private:
+  int width_;
+  std::vector<Eigen::Array4f> texels_;
+};
+
+// Draws one triangle: from each layer, the texel at the pixel's barycentric place.
+void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& fixed,
+                  std::span<const ActiveLayer> layers, const View& view, Canvas* canvas) {
+  std::array<int, 3> v = corners;
+  const auto twice_area = [&] {
+    const Fixed &a = fixed[v[0]], &b = fixed[v[1]], &c = fixed[v[2]];
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  };
+  if (twice_area() < 0) std::swap(v[1], v[2]);  // a folded triangle shows its back
+  const std::int64_t area = twice_area();
+  if (area == 0) return;
+  const Fixed &a = fixed[v[0]], &b = fixed[v[1]], &c = fixed[v[2]];
+
+  // Edge k lies opposite corner k, so its function over the area is that corner's weight.
+  const std::array<EdgeFunction, 3> edges = {EdgeFunction(b, c), EdgeFunction(c, a),
+                                             EdgeFunction(a, b)};
+  const auto [low, high] = std::minmax({a[1], b[1], c[1]});
+  const auto subpixels = static_cast<std::int64_t>(kSubpixels);
+  const std::int64_t first_row = std::max<std::int64_t>(0, FloorDivide(low, subpixels));
+  const std::int64_t last_row =
+      std::min<std::int64_t>(view.height - 1, FloorDivide(high, subpixels));
+  for (int y = static_cast<int>(first_row); y <= last_row; ++y) {
+    const auto [first, last] = CoveredSpan(edges, y, view.width);
+    for (std::int64_t x = first; x < last; ++x) {
+      std::array<double, 3> corner_weight;
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t value = edges[k].origin + x * edges[k].along_x + y * edges[k].along_y;
+        corner_weight[k] = static_cast<double>(value) / static_cast<double>(area);
+      }
+      Eigen::Array4f mixed = Eigen::Array4f::Zero();
+      for (const ActiveLayer& layer : layers) {
+        const Points& pose = *layer.pose;
+        const Point place = (corner_weight[0] * pose.row(v[0]) + corner_weight[1] * pose.row(v[1]) +
+                             corner_weight[2] * pose.row(v[2]))
+                                .transpose();
+        mixed += layer.weight * layer.texture->At(place, layer.level);
+      }
+      canvas->Over(x, y, mixed);
+    }
+  }
+}
+
+}  // namespace
+
+RenderTexture::RenderTexture(const Texture& texture) : origin_(texture.origin) {
+  const Image& image = texture.image;
+  Level finest{image.width, image.height, texture.scale, {}};
+  finest.texels.resize(image.rgba.size());
+  for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
+    const float alpha = static_cast<float>(image.rgba[k + 3]) / 255.0f;
+    for (int c = 0; c < 3; ++c) finest.texels[k + c] = alpha * LinearFromSrgb(image.rgba[k + c]);
+    finest.texels[k + 3] = alpha;
+  }
+  levels_.push_back(std::move(finest));
+
+  // Each next level averages 2 x 2 texels; beyond the picture all is transparent.
+  while (std::max(levels_.back().width, levels_.back().height) > 1) {
+    const Level& fine = levels_.back();
+    Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, 0.5 * fine.scale, {}};
+    coarse.texels.assign(4 * static_cast<std::size_t>(coarse.width) * coarse.height, 0.0f);
+    for (int y = 0; y < fine.height; ++y) {
+      const float* from = fine.texels.data() + 4 * static_cast<std::size_t>(y) * fine.width;
+      float* to = coarse.texels.data() + 4 * static_cast<std::size_t>(y / 2) * coarse.width;
+      for (int x = 0; x < fine.width; ++x) {
+        for (int c = 0; c < 4; ++c) to[4 * (x / 2) + c] += 0.25f * from[4 * x + c];
+      }
+    }
+    levels_.push_back(std::move(coarse));
+  }
+}
+
+Eigen::Array4f RenderTexture::At(const Point& place, int level) const {
+  const Level& from = levels_[level];
+  const double u = (place.x() - origin_.x()) * from.scale - 0.5;
+  const double v = (place.y() - origin_.y()) * from.scale - 0.5;
+  if (!(u > -1.0 && v > -1.0 && u < from.width && v < from.height)) return Eigen::Array4f::Zero();
+  const int x = static_cast<int>(u + 1.0) - 1, y = static_cast<int>(v + 1.0) - 1;  // floors
+  const float s = static_cast<float>(u - x), t = static_cast<float>(v - y);
+  const float* texel = from.texels.data() + 4 * (static_cast<std::ptrdiff_t>(y) * from.width + x);
+  const std::ptrdiff_t below = 4 * static_cast<std::ptrdiff_t>(from.width);
+  using Texel = Eigen::Map<const Eigen::Array4f>;
+  if (x >= 0 && y >= 0 && x + 1 < from.width && y + 1 < from.height) {
+    return (1.0f - t) * ((1.0f - s) * Texel(texel) + s * Texel(texel + 4)) +
+           t * ((1.0f - s) * Texel(texel + below) + s * Texel(texel + below + 4));
+  }
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      if (x + i < 0 || y + j < 0 || x + i >= from.width || y + j >= from.height) continue;
+      sum += (i == 0 ? 1.0f - s : s) * (j == 0 ? 1.0f - t : t) * Texel(texel + j * below + 4 * i);
+    }
+  }
+  return sum;
+}
+
+int RenderTexture::LevelFor(double length) const {
+  const double texels = length * levels_[0].scale;  // along a pixel
+  if (!(texels > 1.0)) return 0;
+  const double level = std::round(std::log2(texels));
+  return static_cast<int>(std::min<double>(level, static_cast<double>(levels_.size()) - 1));
+}
+
+View FitView(const Point& low, const Point& high, int width, int height) {
+  const Point extent = high - low;
+  View view{0.5 * (low + high), std::numeric_limits<double>::infinity(), width, height};
+  if (extent.x() > 0.0) view.scale = std::min(view.scale, width / extent.x());
+  if (extent.y() > 0.0) view.scale = std::min(view.scale, height / extent.y());
+  if (!std::isfinite(view.scale)) view.scale = 1.0;
+  view.origin -= 0.5 / view.scale * Point(width, height);
+  return view;
+}
+
+Image Render(const Triangles& triangles, const Points& vertices,
+             std::span<const RenderLayer> layers, const View& view) {
+  if (view.width <= 0 || view.height <= 0) return {};
+  const std::vector<ActiveLayer> active = ActiveLayers(triangles, vertices, layers, view);
+  std::vector<Fixed> fixed(vertices.rows());
+  for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
+    fixed[k] = ToFixed(vertices.row(k).transpose(), view);
+  }
+  Canvas canvas(view);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const std::array<int, 3> corners = {triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    DrawTriangle(corners, fixed, active, view, &canvas);
+  }
+  return canvas.ToImage(view);
+}
+
+}  // namespace posespace
