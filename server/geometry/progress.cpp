@@ -5,6 +5,13 @@
 
 namespace posespace {
 
+Progress::Progress(Progress* parent, double begin, double end) : parent_(parent) {
+  if (parent == nullptr) return;
+  listener_ = [parent, begin, end](std::string_view stage, double fraction) {
+    parent->EnterStage(stage, begin + (end - begin) * fraction, end);
+  };
+}
+
 void Progress::EnterStage(std::string_view stage, double begin, double end) {
   stage_ = stage;
   begin_ = begin;

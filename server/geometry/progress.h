@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace posespace {
 
@@ -21,11 +22,17 @@ class Progress {
 
   Progress() = default;
   explicit Progress(Listener listener) : listener_(std::move(listener)) {}
+  // A part of a longer computation: the whole of this is [begin, end] of `parent`, which also
+  // cancels it.  A parent may be absent; otherwise it outlives its parts.
+  Progress(Progress* parent, double begin, double end);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const {
+    return cancelled_.load(std::memory_order_relaxed) ||
+           (parent_ != nullptr && parent_->cancelled());
+  }
 
   // Later reports speak of `stage`, which takes the overall fraction from `begin` to `end`.
   void EnterStage(std::string_view stage, double begin, double end);
@@ -34,6 +41,7 @@ class Progress {
   void Report(double fraction);
 
  private:
+  Progress* const parent_ = nullptr;
   Listener listener_;
   std::atomic<bool> cancelled_{false};
   std::string stage_;

@@ -10,20 +10,21 @@ namespace posespace {
 // Every limit of the service, with its reason; all can be set by flag.
 struct Limits {
   // Affect what is accepted.
-  std::int64_t max_request_bytes = 16 << 20;   // one request; a 4k PNG fits
-  std::int64_t max_image_pixels = 32'000'000;  // checked from the header, before decoding
-  int max_shapes = 64;                         // of one session; cost grows with each
-  int max_outline_points = 20'000;             // of one ring
-  int max_landmarks = 256;                     // tuples of one session
-  int max_mesh_vertices = 8'000;               // bounds the cost of every blend
-  int max_queries = 256;                       // of one Blend or Render
-  int max_render_side = 4'096;                 // pixels
+  std::int64_t max_request_bytes = 16 << 20;     // one request; a 4k PNG fits
+  std::int64_t max_image_pixels = 32'000'000;    // checked from the header, before decoding
+  std::int64_t max_session_pixels = 64'000'000;  // of all pictures; 25 bytes each once built
+  int max_shapes = 64;                           // of one session; cost grows with each
+  int max_outline_points = 20'000;               // of one ring
+  int max_landmarks = 256;                       // tuples of one session
+  int max_mesh_vertices = 8'000;                 // bounds the cost of every blend
+  int max_queries = 256;                         // of one Blend or Render
+  int max_render_side = 4'096;                   // pixels
   // Affect how much runs at once.
   int max_sessions = 10'000;
   int max_streams = 10'000;
   int max_stream_slots = 64;
-  int max_stream_items = 256;                  // of one Play frame
-  int max_in_flight = 4;                       // Play frames read ahead
+  int max_stream_items = 256;  // of one Play frame
+  int max_in_flight = 4;       // Play frames read ahead
   int concurrent_builds = 2;
   int build_queue = 64;
   std::chrono::seconds build_timeout{120};

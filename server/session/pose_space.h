@@ -3,6 +3,7 @@
 #define POSESPACE_SESSION_POSE_SPACE_H_
 
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -36,10 +37,16 @@ struct BuildInputs {
   MappingOptions options;
 };
 
-// Digest of the inputs and the algorithm version, as lower-case hexadecimal: the mesh's inputs alone
-// (without placements), and all of them.  Equal inputs have equal digests.
+// Digest of the inputs and the algorithm version, as lower-case hexadecimal: the mesh's inputs
+// alone (without placements), and all of them.  Equal inputs have equal digests; a drawing counts
+// by its id and its digest.
 std::string MeshDigest(const BuildInputs& inputs);
 std::string RevisionDigest(const BuildInputs& inputs);
+std::string RevisionDigest(const std::string& mesh_digest, const Points& placements);
+
+// What boundary_matching.h sees of drawings, in their order and under their ids.
+std::vector<MatchingShape> MatchingShapesOf(
+    std::span<const std::shared_ptr<const Drawing>> drawings);
 
 // What to blend, and how.
 struct Query {
@@ -61,24 +68,37 @@ struct Frame {
 class PoseSpace {
  public:
   // Builds from scratch; reports stages of mapping and "weights" to `progress`.
+  //
+  // Requires  every landmark has one entry a drawing.
+  // Fails     kNoShapes, kSizeMismatch, as CheckPlacements (placements.h) before any work, and as
+  //           MapShapes, RigidBlend::Prepare and PoseWeights::Fit do; kCancelled.
   static Result<std::shared_ptr<const PoseSpace>> Build(const BuildInputs& inputs,
                                                         Progress* progress = nullptr);
 
-  // The same mesh and drawings at other placements: only the weight field and turns are made anew.
-  Result<std::shared_ptr<const PoseSpace>> WithPlacements(const Points& placements) const;
+  // The same mesh, textures and drawings, shared, at other placements: only the weight field and
+  // turns are made anew.  Well under a second.
+  // Fails  as CheckPlacements, PoseWeights::Fit; kCancelled.
+  Result<std::shared_ptr<const PoseSpace>> WithPlacements(const Points& placements,
+                                                          Progress* progress = nullptr) const;
 
+  // Explicit weights are divided by their sum, so a frame's weights sum to 1.
   // Fails  kPoseNotFinite, kWeightsNotFinite, kWeightsCountMismatch, kWeightsSumNotOne (1e-3),
-  //        kInvalidOption (refits, sigma).
+  //        kInvalidOption (refits, sigma, weights beyond 1e6); the field, such as "weights", is the
+  //        query's.
   Result<Frame> Blend(const Query& query, bool weights_only = false) const;
 
-  // The blend of a query as a picture.
+  // The blend of a query as a picture; transparent when the frame has no vertices.
+  // Requires  a frame of this pose space; a view whose size is bounded by the caller.
   Image Render(const Frame& frame, const View& view) const;
 
   // The view that every picture of this pose space uses unless told otherwise: the box of all poses
   // with a margin of a twentieth of it on each side.
   View DefaultView(int width, int height) const;
 
-  const std::string& revision() const;
+  const std::string& revision() const;  // RevisionDigest of its inputs
+  const std::string& mesh_digest()
+      const;                         // MeshDigest of its inputs: the same for other placements
+  const Points& placements() const;  // row i the place of drawings()[i]
   const CompatibleMesh& mesh() const;
   const std::vector<std::shared_ptr<const Drawing>>& drawings() const;
   const std::vector<int>& turns() const;
@@ -86,8 +106,12 @@ class PoseSpace {
   const std::vector<std::string>& warnings() const;  // what a person should know of the build
 
  private:
+  struct Body;
   struct State;
   explicit PoseSpace(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  static Result<std::shared_ptr<const PoseSpace>> Place(const std::shared_ptr<const Body>& body,
+                                                        const Points& placements,
+                                                        Progress* progress);
   std::shared_ptr<const State> state_;
 };
 

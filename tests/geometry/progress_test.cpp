@@ -37,6 +37,41 @@ TEST(Progress, IsCancelledFromAnotherThread) {
   EXPECT_FALSE(IsCancelled(nullptr));
 }
 
+TEST(Progress, ShowsAPartAsItsShareOfTheWhole) {
+  std::vector<std::pair<std::string, double>> heard;
+  Progress whole([&](std::string_view stage, double fraction) {
+    heard.emplace_back(stage, fraction);
+  });
+  Progress part(&whole, 0.0, 0.5);
+  part.EnterStage("matching", 0.0, 0.5);
+  part.Report(1.0);
+  part.EnterStage("improvement", 0.5, 1.0);
+  part.Report(1.0);
+  whole.EnterStage("weights", 0.5, 1.0);
+  EXPECT_THAT(heard, testing::ElementsAre(
+                         std::pair("matching", 0.0), std::pair("matching", 0.25),
+                         std::pair("improvement", 0.25), std::pair("improvement", 0.5),
+                         std::pair("weights", 0.5)));
+}
+
+TEST(Progress, CancelsItsPartsButNotTheOtherWayRound) {
+  Progress whole;
+  Progress first(&whole, 0.0, 0.5);
+  Progress second(&whole, 0.5, 1.0);
+  first.Cancel();
+  EXPECT_TRUE(first.cancelled());
+  EXPECT_FALSE(whole.cancelled());
+  whole.Cancel();
+  EXPECT_TRUE(second.cancelled());
+}
+
+TEST(Progress, IsAWholeByItselfWhenItsParentIsAbsent) {
+  Progress part(nullptr, 0.0, 0.5);
+  part.EnterStage("matching", 0.0, 1.0);
+  part.Report(1.0);
+  EXPECT_FALSE(part.cancelled());
+}
+
 Result<int> Half(int value) {
   if (value % 2 != 0) return Error{ErrorCode::kInvalidOption, "odd", {}};
   return value / 2;

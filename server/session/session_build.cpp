@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a session's inputs become its pose space: builds are started, attached to, replaced.
+#include <utility>
+
+#include "session/session_state.h"
+
+namespace posespace {
+namespace {
+
+Result<void> CheckRange(const std::string& field, double value, double least, double greatest) {
+  if (value >= least && value <= greatest) return {};
+  const std::string message = field + " is " + std::to_string(value) + ", not " +
+                              std::to_string(least) + " to " + std::to_string(greatest);
+  return Error{ErrorCode::kInvalidOption, message, {{field, message}}};
+}
+
+Result<MappingOptions> OptionsOf(const BuildRequest& request, const Limits& limits) {
+  TRY(CheckRange("options.tolerance", request.tolerance, 0.001, 0.2));
+  TRY(CheckRange("options.target_edge_length", request.target_edge_length, 0.02, 1.0));
+  MappingOptions options;
+  options.simplification.tolerance = request.tolerance;
+  options.improvement.target_edge_length = request.target_edge_length;
+  options.triangulation.max_vertices = limits.max_mesh_vertices;
+  options.improvement.max_vertices = limits.max_mesh_vertices;
+  return options;
+}
+
+}  // namespace
+
+Result<BuildStatus> Session::StartBuild(const BuildRequest& request, BuildPool& pool) {
+  const std::lock_guard edit(state_->editing);
+  BuildInputs inputs;
+  inputs.options = TRY(OptionsOf(request, limits_));
+  std::int64_t placed = 0;
+  {
+    const std::lock_guard lock(state_->mutex);
+    TRY(state_->AcceptEdit(""));
+    if (state_->drawings.empty()) {
+      return Error{ErrorCode::kNoShapes, "session '" + id_ + "' has no drawing to build from", {}};
+    }
+    const std::vector<std::string> ids = state_->ShapeIds();
+    const Placements placements = PlacementsOrDefault(state_->placements, ids);
+    TRY(CheckPlaced(ids, placements));
+    inputs.placements.resize(std::ssize(ids), 2);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      inputs.placements.row(i) = placements.at(ids[i]);
+    }
+    inputs.drawings = state_->drawings;
+    inputs.landmarks = LandmarksOf(state_->correspondences, inputs.drawings);
+    placed = state_->placements_version;
+  }
+
+  const auto previous = state_->Latest();
+  const auto built = state_->BuiltOrNull();
+  const std::string revision = RevisionDigest(inputs);
+  if (previous != nullptr && previous->revision() == revision && !previous->cancelled()) {
+    const BuildStatus status = previous->Status();
+    const bool current = built != nullptr && built->revision() == revision;
+    if (!status.ended() || (status.state == BuildState::kSucceeded && current)) return status;
+  }
+
+  // What is built already, or comes from it by new placements alone, is not built again.
+  const std::string build_id = std::to_string(++state_->builds);
+  std::shared_ptr<BuildJob> job;
+  if (built != nullptr && built->revision() == revision) {
+    job = std::make_shared<BuildJob>(build_id, built, state_->build_changes);
+  } else {
+    const auto publish = [weak = std::weak_ptr(state_), placed](const BuildStatus& status) {
+      if (const auto state = weak.lock()) state->Publish(status, placed);
+    };
+    job = std::make_shared<BuildJob>(build_id, std::move(inputs), publish, built,
+                                     state_->build_changes);
+    TRY(pool.Submit(job));
+  }
+  {
+    // A job that is done by now waits with its result for `editing`, and finds itself the latest.
+    const std::lock_guard lock(state_->mutex);
+    if (!state_->closed) {
+      const std::lock_guard read(state_->reading);
+      state_->latest = job;
+    }
+  }
+  if (previous != nullptr) previous->Cancel();
+  if (closed()) {
+    job->Cancel();
+    return Error{ErrorCode::kSessionNotFound, "session '" + id_ + "' has been deleted", {}};
+  }
+  return job->Status();
+}
+
+std::shared_ptr<BuildJob> Session::LatestBuild() const { return state_->Latest(); }
+
+Result<std::shared_ptr<const PoseSpace>> Session::Built() const {
+  if (auto built = state_->BuiltOrNull()) return built;
+  std::string message = "session '" + id_ + "' has not been built";
+  if (const auto latest = state_->Latest()) {
+    const BuildStatus status = latest->Status();
+    message += status.error ? ": " + status.error->message : ": its build is still running";
+  }
+  return Error{ErrorCode::kSessionNotBuilt, std::move(message), {}};
+}
+
+void Session::Close() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->closed = true;
+  }
+  if (const auto latest = state_->Latest()) latest->Cancel();
+}
+
+Result<void> Session::CloseIf(const std::string& etag) {
+  {
+    const std::lock_guard lock(state_->mutex);
+    TRY(state_->AcceptEdit(etag));
+    state_->closed = true;
+  }
+  if (const auto latest = state_->Latest()) latest->Cancel();
+  return {};
+}
+
+bool Session::closed() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->closed;
+}
+
+}  // namespace posespace
