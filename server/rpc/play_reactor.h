@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_RPC_PLAY_REACTOR_H_
+#define POSESPACE_RPC_PLAY_REACTOR_H_
+
+#include <grpcpp/support/server_callback.h>
+
+#include <chrono>
+
+#include "posespace/v1/pose_service.pb.h"
+#include "rpc/call.h"
+#include "rpc/compute_pool.h"
+#include "rpc/live_streams.h"
+#include "rpc/play_stream.h"
+#include "session/registry.h"
+
+namespace posespace {
+
+// Carries a PlayStream over gRPC; decides nothing.  Deletes itself when the call is done.
+class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>,
+                          private PlayTransport,
+                          private LiveStream {
+ public:
+  PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& pool);
+
+ private:
+  void OnReadDone(bool ok) override { stream_.OnRead(ok); }
+  void OnWriteDone(bool ok) override { stream_.OnWritten(ok); }
+  void OnCancel() override;
+  void OnDone() override;
+
+  void StartRead(v1::PlayRequest* message) override { ServerBidiReactor::StartRead(message); }
+  void StartWrite(const v1::PlayResponse* message) override {
+    ServerBidiReactor::StartWrite(message);
+  }
+  void ScheduleWork() override {
+    pool_.Post([this] { stream_.Work(); });
+  }
+  void Finish(Result<void> outcome) override {
+    ServerBidiReactor::Finish(call_.End(std::move(outcome)));
+  }
+
+  void Beat(std::chrono::steady_clock::time_point now) override { stream_.Beat(now); }
+  void Drain(std::chrono::milliseconds grace) override { stream_.Drain(grace); }
+
+  const Call call_{"Play"};
+  LiveStreams& streams_;
+  ComputePool& pool_;
+  PlayStream stream_;
+  bool admitted_ = false;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_RPC_PLAY_REACTOR_H_

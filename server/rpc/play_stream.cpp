@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/play_stream.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace posespace {
+
+PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport)
+    : transport_(transport),
+      max_in_flight_(static_cast<std::size_t>(limits.max_in_flight)),
+      slots_(registry, limits) {
+  v1::PlayResponse welcome;
+  welcome.mutable_welcome()->set_max_slots(static_cast<std::uint32_t>(limits.max_stream_slots));
+  welcome.mutable_welcome()->set_max_items(static_cast<std::uint32_t>(limits.max_stream_items));
+  welcome.mutable_welcome()->set_max_in_flight(static_cast<std::uint32_t>(limits.max_in_flight));
+  Queue(std::move(welcome));
+}
+
+void PlayStream::Start() {
+  std::unique_lock lock(mutex_);
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::OnRead(bool ok) {
+  std::unique_lock lock(mutex_);
+  reading_ = false;
+  if (!ok) {
+    all_said_ = true;
+  } else if (!outcome_) {
+    waiting_.push_back(std::move(incoming_));
+    ++in_flight_;
+  }
+  const Next next = Advance(/*may_work_here=*/true);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::OnWritten(bool ok) {
+  std::unique_lock lock(mutex_);
+  writing_ = false;
+  if (outgoing_.front().completes) --in_flight_;
+  queued_bytes_ -= outgoing_.front().bytes;
+  outgoing_.pop_front();
+  if (!ok) {
+    gone_ = true;
+    End(Error{ErrorCode::kCancelled, "the client went away", {}});
+  }
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::OnCancelled() {
+  std::unique_lock lock(mutex_);
+  gone_ = true;
+  End(Error{ErrorCode::kCancelled, "the client went away", {}});
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::Work() {
+  std::vector<v1::PlayResponse> answers;
+  const auto send = [&](v1::PlayResponse answer) { answers.push_back(std::move(answer)); };
+  // The front stays in place while others append: deque references survive push_back.
+  const auto request = [&]() -> const v1::PlayRequest& {
+    const std::scoped_lock lock(mutex_);
+    return waiting_.front();
+  };
+  Result<void> answered = slots_.Answer(request(), send);
+
+  std::unique_lock lock(mutex_);
+  working_ = false;
+  waiting_.pop_front();
+  for (v1::PlayResponse& answer : answers) Queue(std::move(answer));
+  if (answers.empty() || gone_) {
+    --in_flight_;
+  } else {
+    outgoing_.back().completes = true;
+  }
+  if (!answered) End(std::move(answered));
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::Beat(Clock::time_point now) {
+  std::unique_lock lock(mutex_);
+  if (cut_off_ && now >= *cut_off_) End(Error{ErrorCode::kDraining, "the service has ended", {}});
+  if (!working_ && !outcome_) {
+    slots_.FollowRevisions([this](v1::PlayResponse answer) { Queue(std::move(answer)); });
+  }
+  if (outgoing_.empty() && now - last_said_ >= kHeartbeat) {
+    v1::PlayResponse heartbeat;
+    heartbeat.mutable_heartbeat();
+    Queue(std::move(heartbeat));
+  }
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::Drain(std::chrono::milliseconds stop_sending_in, Clock::time_point now) {
+  std::unique_lock lock(mutex_);
+  if (!cut_off_) {
+    cut_off_ = now + stop_sending_in;
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(stop_sending_in);
+    v1::PlayResponse draining;
+    auto* const duration = draining.mutable_draining()->mutable_stop_sending_in();
+    duration->set_seconds(seconds.count());
+    duration->set_nanos(static_cast<std::int32_t>(
+        std::chrono::nanoseconds(stop_sending_in - seconds).count()));
+    Queue(std::move(draining));
+  }
+  const Next next = Advance(/*may_work_here=*/false);
+  lock.unlock();
+  Do(next);
+}
+
+void PlayStream::Queue(v1::PlayResponse message) {
+  if (gone_) return;
+  const std::size_t bytes = message.ByteSizeLong();
+  queued_bytes_ += bytes;
+  outgoing_.push_back({std::move(message), bytes});
+}
+
+// The first outcome counts.  Messages that nobody works on yet are dropped, and once the client is gone
+// so are answers, except one that is being written.
+void PlayStream::End(Result<void> outcome) {
+  if (finished_) return;
+  if (!outcome_) outcome_ = std::move(outcome);
+  waiting_.resize(working_ ? 1 : 0);
+  if (gone_) outgoing_.resize(writing_ ? 1 : 0);
+}
+
+// Starts what can be started and says what the caller must do after unlocking.  Reads and writes
+// start under the lock, so that none follows a Finish.
+PlayStream::Next PlayStream::Advance(bool may_work_here) {
+  if (finished_) return Next::kWait;
+  if (!writing_ && !outgoing_.empty()) {
+    writing_ = true;
+    last_said_ = Clock::now();
+    transport_.StartWrite(&outgoing_.front().message);
+  }
+  if (!reading_ && !all_said_ && !outcome_ && in_flight_ < max_in_flight_) {
+    reading_ = true;
+    transport_.StartRead(&incoming_);
+  }
+  if (!working_ && !waiting_.empty() && queued_bytes_ <= kQueuedBytes) {
+    working_ = true;
+    const bool brief = slots_.EstimateMicroseconds(waiting_.front()) <= kShortWork;
+    return may_work_here && brief ? Next::kWorkHere : Next::kScheduleWork;
+  }
+  const bool over = outcome_ || (all_said_ && waiting_.empty());
+  if (over && !working_ && !writing_ && outgoing_.empty()) {
+    finished_ = true;
+    return Next::kFinish;
+  }
+  return Next::kWait;
+}
+
+void PlayStream::Do(Next next) {
+  switch (next) {
+    case Next::kWait: return;
+    case Next::kWorkHere: return Work();
+    case Next::kScheduleWork: return transport_.ScheduleWork();
+    case Next::kFinish: return transport_.Finish(outcome_.value_or(Result<void>()));
+  }
+}
+
+}  // namespace posespace

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_RPC_PLAY_STREAM_H_
+#define POSESPACE_RPC_PLAY_STREAM_H_
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "geometry/result.h"
+#include "posespace/v1/pose_service.pb.h"
+#include "rpc/play_slots.h"
+#include "session/limits.h"
+
+namespace posespace {
+
+// What a Play stream asks of whatever carries it.  No call may come back into the stream before it
+// returns.
+class PlayTransport {
+ public:
+  // Reads the next message; then OnRead.
+  virtual void StartRead(v1::PlayRequest* message) = 0;
+  // Writes a message, which stays until OnWritten.
+  virtual void StartWrite(const v1::PlayResponse* message) = 0;
+  // Has PlayStream::Work called on a thread that may be busy for long.
+  virtual void ScheduleWork() = 0;
+  // The last call.  The stream may be deleted once all that was started has come back.
+  virtual void Finish(Result<void> outcome) = 0;
+
+ protected:
+  ~PlayTransport() = default;
+};
+
+// What a Play stream does with time and order: it reads ahead, answers one message after another,
+// writes one message at a time, beats, drains and ends.  What it answers is play_slots.h; it knows
+// no gRPC.  Thread-safe: events may come from any thread.
+//
+// A frame is in flight from being read until its result is written; at most max_in_flight are,
+// and nothing more is answered while kQueuedBytes wait to be written.  So a slow reader costs only
+// itself.  The stream ends when the client has said all and got its answers, by a breach of the
+// protocol, by cancellation, or when it outlives its draining.
+class PlayStream {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr std::size_t kQueuedBytes = 4 << 20;
+  static constexpr std::chrono::seconds kHeartbeat{10};
+  static constexpr double kShortWork = 100.0;  // microseconds that may pass on the reading thread
+
+  PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport);
+
+  // Says Welcome and begins to read.
+  void Start();
+
+  void OnRead(bool ok);     // not ok: the client has said all
+  void OnWritten(bool ok);  // not ok: the client is gone
+  void OnCancelled();
+  void Work();  // answers one message
+
+  // Says Heartbeat after a silence, and RevisionChanged without waiting for a frame.
+  void Beat(Clock::time_point now);
+
+  // Says Draining; a client that has not ended after the time is cut off.
+  void Drain(std::chrono::milliseconds stop_sending_in, Clock::time_point now = Clock::now());
+
+ private:
+  struct Outgoing {
+    v1::PlayResponse message;
+    std::size_t bytes;
+    bool completes = false;  // the last answer to a message that was read
+  };
+  enum class Next { kWait, kWorkHere, kScheduleWork, kFinish };
+
+  void Queue(v1::PlayResponse message);
+  void End(Result<void> outcome);
+  Next Advance(bool may_work_here);
+  void Do(Next next);
+
+  PlayTransport& transport_;
+  const std::size_t max_in_flight_;
+  PlaySlots slots_;  // used by whoever set working_, or under the lock while it is not set
+
+  std::mutex mutex_;
+  v1::PlayRequest incoming_;
+  std::deque<v1::PlayRequest> waiting_;  // read and not yet answered; its front is being worked on
+  std::deque<Outgoing> outgoing_;        // its front is being written while writing_
+  std::size_t queued_bytes_ = 0;
+  std::size_t in_flight_ = 0;
+  bool reading_ = false;
+  bool writing_ = false;
+  bool working_ = false;
+  bool all_said_ = false;
+  bool gone_ = false;      // nothing can be written any more
+  bool finished_ = false;
+  std::optional<Result<void>> outcome_;  // set: no further message is answered
+  Clock::time_point last_said_ = Clock::now();
+  std::optional<Clock::time_point> cut_off_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_RPC_PLAY_STREAM_H_

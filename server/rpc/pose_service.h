@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_RPC_POSE_SERVICE_H_
+#define POSESPACE_RPC_POSE_SERVICE_H_
+
+#include "posespace/v1/pose_service.grpc.pb.h"
+#include "rpc/compute_pool.h"
+#include "rpc/live_streams.h"
+#include "session/registry.h"
+
+namespace posespace {
+
+// Run-time calls; what each does is said in pose_service.proto.  Blends run on `blend_pool` unless they
+// are short, pictures and whole meshes on `bulk_pool`, so that frames never wait for pictures.
+class PoseService final : public v1::PoseService::CallbackService {
+ public:
+  PoseService(Registry& registry, LiveStreams& streams, ComputePool& blend_pool,
+              ComputePool& bulk_pool)
+      : registry_(registry), streams_(streams), blend_pool_(blend_pool), bulk_pool_(bulk_pool) {}
+
+  grpc::ServerUnaryReactor* GetMesh(grpc::CallbackServerContext* context,
+                                    const v1::GetMeshRequest* request,
+                                    v1::GetMeshResponse* response) override;
+  grpc::ServerUnaryReactor* GetTexture(grpc::CallbackServerContext* context,
+                                       const v1::GetTextureRequest* request,
+                                       v1::GetTextureResponse* response) override;
+  grpc::ServerUnaryReactor* Blend(grpc::CallbackServerContext* context,
+                                  const v1::BlendRequest* request,
+                                  v1::BlendResponse* response) override;
+  grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* Play(
+      grpc::CallbackServerContext* context) override;
+  grpc::ServerWriteReactor<v1::RenderResponse>* Render(grpc::CallbackServerContext* context,
+                                                       const v1::RenderRequest* request) override;
+
+ private:
+  Result<std::shared_ptr<const PoseSpace>> Built(const std::string& session_id) const;
+  bool IsShort(const v1::BlendRequest& request) const;
+
+  Registry& registry_;
+  LiveStreams& streams_;
+  ComputePool& blend_pool_;
+  ComputePool& bulk_pool_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_RPC_POSE_SERVICE_H_

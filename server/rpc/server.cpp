@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/server.h"
+
+#include <grpc/grpc.h>
+#include <grpcpp/ext/health_check_service_server_builder_option.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server_builder.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+namespace posespace {
+namespace {
+
+constexpr int kMetadataBytes = 8 << 10;
+constexpr std::size_t kWaitingBlends = 4'096;  // a few seconds of work
+constexpr std::size_t kWaitingUploads = 64;    // each may hold a whole request
+constexpr int kBulkNiceness = 5;               // pictures and uploads give way to frames
+
+int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+void SetTransportOptions(grpc::ServerBuilder& builder, const Limits& limits) {
+  // Without this two servers could share a port, and each would get some of the calls.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
+  builder.SetMaxSendMessageSize(-1);
+  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMetadataBytes);
+  // The clients ship the same values.
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+}
+
+}  // namespace
+
+Server::Server(const Limits& limits)
+    : registry_(limits),
+      streams_(limits.max_streams),
+      blend_pool_(Cores(), kWaitingBlends, 0),
+      bulk_pool_(Cores(), kWaitingUploads, kBulkNiceness),
+      session_service_(registry_, streams_, bulk_pool_),
+      pose_service_(registry_, streams_, blend_pool_, bulk_pool_) {}
+
+Server::~Server() { Shutdown(std::chrono::milliseconds(0)); }
+
+Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const Limits& limits) {
+  std::unique_ptr<Server> service(new Server(limits));
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::ServerBuilder builder;
+  SetTransportOptions(builder, limits);
+  builder.AddListeningPort(listen, grpc::InsecureServerCredentials(), &service->port_);
+  builder.RegisterService(&service->session_service_);
+  builder.RegisterService(&service->pose_service_);
+  service->server_ = builder.BuildAndStart();
+  if (!service->server_) {
+    return Error{ErrorCode::kInvalidOption,
+                 "cannot listen on " + listen +
+                     ": it is in use, or not an address of this machine", {}};
+  }
+
+  const bool unix_socket = listen.starts_with("unix:");
+  if (unix_socket) service->port_ = 0;
+  service->address_ =
+      unix_socket ? listen
+                  : listen.substr(0, listen.rfind(':') + 1) + std::to_string(service->port_);
+  grpc::HealthCheckServiceInterface& health = *service->server_->GetHealthCheckService();
+  health.SetServingStatus(true);
+  health.SetServingStatus(v1::SessionService::service_full_name(), true);
+  health.SetServingStatus(v1::PoseService::service_full_name(), true);
+  service->pulse_ = std::make_unique<Pulse>(
+      *service->server_, [&streams = service->streams_](auto now) { streams.Beat(now); });
+  return service;
+}
+
+void Server::BeginDrain(std::chrono::milliseconds grace) {
+  server_->GetHealthCheckService()->Shutdown();
+  registry_.build_pool().Stop();
+  streams_.Drain(grace);
+}
+
+void Server::Shutdown(std::chrono::milliseconds patience) {
+  if (!server_) return;
+  pulse_.reset();
+  server_->Shutdown(std::chrono::system_clock::now() + patience);
+  server_.reset();
+}
+
+}  // namespace posespace
