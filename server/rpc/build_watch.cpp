@@ -24,7 +24,7 @@ Result<void> BuildWatch::Begin(const Registry& registry, const v1::WatchBuildReq
                  "session '" + session->id() + "' has had no build yet", {}};
   }
   TRY(streams_.Add(this));
-  // A number beyond the build's own is that of an earlier build: nothing of this one has been seen.
+  // A number beyond the build's own is not of this session, which may have been made anew.
   const bool resumed = request.after_sequence() <= job->Status().sequence;
   after_sequence_ = resumed ? request.after_sequence() : 0;
   job_ = std::move(job);

@@ -7,13 +7,12 @@
 #include <grpcpp/support/status.h>
 
 #include <chrono>
-#include <exception>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "geometry/result.h"
 #include "rpc/compute_pool.h"
+#include "rpc/shown_error.h"
 
 namespace posespace {
 
@@ -30,18 +29,6 @@ class Call {
   std::string_view method_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-// What a handler answers, with anything thrown turned into kInternal.
-template <typename Handler>
-auto Guarded(Handler&& handler) noexcept -> std::invoke_result_t<Handler> {
-  try {
-    return handler();
-  } catch (const std::exception& thrown) {
-    return Error{ErrorCode::kInternal, thrown.what(), {}};
-  } catch (...) {
-    return Error{ErrorCode::kInternal, "an exception of unknown type", {}};
-  }
-}
 
 // Answers a unary call at once.  For handlers of at most about 100 us; they run on a thread that
 // serves everybody.

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "rpc/status.h"
+#include "rpc/shown_error.h"
 
 namespace posespace {
 namespace {

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "rpc/call.h"
 #include "rpc/query_convert.h"
-#include "rpc/status.h"
+#include "rpc/shown_error.h"
 
 namespace posespace {
 namespace {

@@ -78,8 +78,8 @@ Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const L
 
 void Server::BeginDrain(std::chrono::milliseconds grace) {
   server_->GetHealthCheckService()->Shutdown();
-  registry_.build_pool().Stop();
   streams_.Drain(grace);
+  registry_.build_pool().Stop();
 }
 
 void Server::Shutdown(std::chrono::milliseconds patience) {

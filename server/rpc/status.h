@@ -4,9 +4,6 @@
 
 #include <grpcpp/support/status.h>
 
-#include <string>
-#include <string_view>
-
 #include "geometry/result.h"
 
 namespace posespace {
@@ -22,14 +19,6 @@ grpc::StatusCode StatusCodeOf(ErrorCode code);
 // by ErrorInfo.metadata["truncated"] = number of violations left out.  Trailers of about 8 KiB would
 // reach the caller as RESOURCE_EXHAUSTED, whatever they said.
 grpc::Status StatusOf(const Error& error);
-
-// An error that may be shown to a caller.  All are as they are, except kInternal: what went wrong is
-// logged under a random id, and the caller gets the id alone.
-Error Shown(Error error);
-
-// At most `most` bytes of text, cut between characters, without bytes that are not UTF-8: proto
-// strings with such bytes cannot be read by the other side.
-std::string CleanText(std::string_view text, std::size_t most);
 
 }  // namespace posespace
 
