@@ -21,7 +21,7 @@ struct DecodeLimits {
 // Pure; call from any thread.
 Result<Image> DecodeImage(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
 
-// Pixels -> the bytes of a PNG file.
+// Pixels -> the bytes of a PNG file; none for an image without pixels.
 std::vector<std::uint8_t> EncodePng(const Image& image);
 
 }  // namespace posespace

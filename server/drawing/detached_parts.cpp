@@ -2,7 +2,6 @@
 #include "drawing/detached_parts.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <tuple>
@@ -12,48 +11,62 @@
 namespace posespace {
 namespace {
 
-// A bridge between two parts, ordered by length first.
+// A bridge between two parts.
 struct Bridge {
-  int squared_length;
   int part_a, part_b;
+  int squared_length;
   cv::Point end_a, end_b;
 
   auto Key() const {
-    return std::tuple(squared_length, part_a, part_b, end_a.y, end_a.x, end_b.y, end_b.x);
+    return std::tuple(part_a, part_b, squared_length, end_a.y, end_a.x, end_b.y, end_b.x);
   }
   bool operator<(const Bridge& other) const { return Key() < other.Key(); }
+  bool operator==(const Bridge& other) const { return Key() == other.Key(); }
 };
 
-// The shortest bridge between each two parts whose Voronoi cells share a border.  Like the edges of
-// the Delaunay triangulation of points, these contain a shortest set that connects all parts.
+// The shortest bridge between each two parts whose Voronoi cells share a border, the middle one
+// where many are equally short.  Like the edges of the Delaunay triangulation of points, these
+// contain a shortest set that connects all parts.
 std::vector<Bridge> NeighbourBridges(const cv::Mat1i& part_of) {
   cv::Mat1f distance;
   cv::Mat1i nearest;  // at each pixel, the number of the nearest pixel that is in a part
   cv::distanceTransform(part_of == 0, distance, nearest, cv::DIST_L2, cv::DIST_MASK_5,
                         cv::DIST_LABEL_PIXEL);
-  std::vector<cv::Point> place(static_cast<std::size_t>(part_of.total()) + 1);
+  std::vector<cv::Point> place(part_of.total() + 1);
   for (int y = 0; y < part_of.rows; ++y) {
     for (int x = 0; x < part_of.cols; ++x) {
       if (part_of(y, x) != 0) place[nearest(y, x)] = {x, y};
     }
   }
-  std::map<std::pair<int, int>, Bridge> shortest;
+  std::vector<Bridge> candidates;
   const auto consider = [&](int near_p, int near_q) {
+    if (near_p == near_q) return;
     cv::Point a = place[near_p], b = place[near_q];
     if (part_of(a) == part_of(b)) return;
     if (part_of(a) > part_of(b)) std::swap(a, b);
-    const Bridge bridge{(a - b).dot(a - b), part_of(a), part_of(b), a, b};
-    const auto [known, is_new] = shortest.try_emplace({bridge.part_a, bridge.part_b}, bridge);
-    if (!is_new && bridge < known->second) known->second = bridge;
+    candidates.push_back({part_of(a), part_of(b), (a - b).dot(a - b), a, b});
   };
   for (int y = 0; y < nearest.rows; ++y) {
     for (int x = 0; x < nearest.cols; ++x) {
-      if (x > 0 && nearest(y, x) != nearest(y, x - 1)) consider(nearest(y, x), nearest(y, x - 1));
-      if (y > 0 && nearest(y, x) != nearest(y - 1, x)) consider(nearest(y, x), nearest(y - 1, x));
+      if (x > 0) consider(nearest(y, x), nearest(y, x - 1));
+      if (y > 0) consider(nearest(y, x), nearest(y - 1, x));
     }
   }
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+
   std::vector<Bridge> bridges;
-  for (const auto& [parts, bridge] : shortest) bridges.push_back(bridge);
+  for (auto first = candidates.begin(); first != candidates.end();) {
+    const auto of_these_parts = [&](const Bridge& bridge) {
+      return std::pair(bridge.part_a, bridge.part_b) == std::pair(first->part_a, first->part_b);
+    };
+    const auto end = std::partition_point(first, candidates.end(), of_these_parts);
+    const auto longer = std::partition_point(first, end, [&](const Bridge& bridge) {
+      return bridge.squared_length == first->squared_length;
+    });
+    bridges.push_back(first[(longer - first) / 2]);
+    first = end;
+  }
   return bridges;
 }
 
@@ -88,7 +101,9 @@ JoinedParts JoinParts(cv::Mat1b& mask, double smallest_share, int width) {
 
   // Kruskal's minimum spanning tree over the parts.
   std::vector<Bridge> bridges = NeighbourBridges(part_of);
-  std::sort(bridges.begin(), bridges.end());
+  std::stable_sort(bridges.begin(), bridges.end(), [](const Bridge& a, const Bridge& b) {
+    return a.squared_length < b.squared_length;
+  });
   std::vector<int> parent(counted + 1);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int part) {

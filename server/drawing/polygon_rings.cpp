@@ -75,7 +75,7 @@ void RemoveNeedlessRows(NamedRing* ring) {
     while (kept.size() >= 2 && is_needless(kept[kept.size() - 2], kept.back(), row)) {
       kept.pop_back();
     }
-    if (!kept.empty() && point(kept.back()) == point(row)) continue;
+    if (!kept.empty() && point(kept.back()) == point(row)) kept.pop_back();
     kept.push_back(row);
   }
   // The same across the seam.

@@ -251,12 +251,15 @@ View FitView(const Point& low, const Point& high, int width, int height) {
 Image Render(const Triangles& triangles, const Points& vertices,
              std::span<const RenderLayer> layers, const View& view) {
   if (view.width <= 0 || view.height <= 0) return {};
+  Canvas canvas(view);
+  if (!(view.scale > 0.0) || !std::isfinite(view.scale) || !view.origin.allFinite()) {
+    return canvas.ToImage(view);
+  }
   const std::vector<ActiveLayer> active = ActiveLayers(triangles, vertices, layers, view);
   std::vector<Fixed> fixed(vertices.rows());
   for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
     fixed[k] = ToFixed(vertices.row(k).transpose(), view);
   }
-  Canvas canvas(view);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     const std::array<int, 3> corners = {triangles(t, 0), triangles(t, 1), triangles(t, 2)};
     DrawTriangle(corners, fixed, active, view, &canvas);

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "drawing/outline.h"
+#include "geometry/polygon.h"
+#include "tests/support/failure.h"
+#include "tests/support/points.h"
+
+namespace posespace {
+namespace {
+
+using Rings = std::vector<Points>;
+
+Points Reversed(const Points& ring) { return ring.colwise().reverse(); }
+
+Points RegularPolygon(int corners, double radius) {
+  Points ring(corners, 2);
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2 * M_PI * k / corners;
+    ring.row(k) << radius * std::cos(angle), radius * std::sin(angle);
+  }
+  return ring;
+}
+
+TEST(OutlineFromRings, OrientsTheOuterRingPositivelyAndHolesNegatively) {
+  const Points square = PointsOf("0 0, 10 0, 10 10, 0 10");
+  const Points hole = PointsOf("2 2, 4 2, 4 4, 2 4");
+  for (const Points& outer : {square, Reversed(square)}) {
+    for (const Points& inner : {hole, Reversed(hole)}) {
+      const auto outline = OutlineFromRings(outer, Rings{inner});
+      ASSERT_TRUE(outline) << outline.error().message;
+      EXPECT_DOUBLE_EQ(SignedArea(outline->outer), 100.0);
+      ASSERT_EQ(outline->holes.size(), 1u);
+      EXPECT_DOUBLE_EQ(SignedArea(outline->holes[0]), -4.0);
+      EXPECT_EQ(outline->holes_filled, 1);
+      EXPECT_EQ(outline->colours.rows(), 0);
+    }
+  }
+}
+
+TEST(OutlineFromRings, KeepsTheRowsOfAPositiveRingAsTheyAre) {
+  const Points ring = PointsOf("5 5, 9 1, 12 7, 6 11");
+  const auto outline = OutlineFromRings(ring, {});
+  ASSERT_TRUE(outline) << outline.error().message;
+  EXPECT_EQ(outline->outer, ring);
+}
+
+TEST(OutlineFromRings, RemovesRepeatedAndNeedlessPoints) {
+  const Points ring =
+      PointsOf("5 0, 5 0, 10 0, 10 0, 10 5, 10 10, 7 10, 3 10, 0 10, 0 0, 0 0, 2 0, 5 0");
+  const auto outline = OutlineFromRings(ring, {});
+  ASSERT_TRUE(outline) << outline.error().message;
+  EXPECT_EQ(outline->outer.rows(), 4);
+  EXPECT_DOUBLE_EQ(SignedArea(outline->outer), 100.0);
+}
+
+TEST(OutlineFromRings, NamesTheEdgesThatCrossAndWhereAsTheyWereGiven) {
+  const Points bow = PointsOf("0 0, 0 0, 10 10, 10 0, 0 10");
+  const auto outline = OutlineFromRings(bow, {});
+  ASSERT_THAT(outline, FailsWith(ErrorCode::kOutlineNotSimple,
+                                 "the outline: edge 1 meets edge 3 near (5, 5)"));
+  ASSERT_EQ(outline.error().where.size(), 2u);
+  EXPECT_EQ(outline.error().where[0].field, "outline[1]");
+  EXPECT_EQ(outline.error().where[1].field, "outline[3]");
+}
+
+TEST(OutlineFromRings, RefusesSpikesAndTouches) {
+  EXPECT_THAT(OutlineFromRings(PointsOf("0 0, 10 0, 20 0, 10 0, 10 10"), {}),
+              FailsWith(ErrorCode::kOutlineNotSimple));
+  EXPECT_THAT(OutlineFromRings(PointsOf("0 0, 10 0, 10 10, 5 0, 0 10"), {}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "(5, 0)"));
+}
+
+TEST(OutlineFromRings, RefusesRingsWithoutArea) {
+  for (const char* ring :
+       {"", "1 1", "1 1, 2 2", "1 1, 2 2, 1 1, 2 2", "0 0, 4 0, 2 0", "0 0, 4 0, 2 0, 6 0",
+        "3 3, 3 3, 3 3, 3 3", "0 0, 1e-4 0, 1e-4 1e-4, 0 1e-4"}) {
+    EXPECT_THAT(OutlineFromRings(PointsOf(ring), {}), FailsWith(ErrorCode::kOutlineTooSmall))
+        << ring;
+  }
+  EXPECT_TRUE(OutlineFromRings(PointsOf("0 0, 1e-2 0, 1e-2 1e-2, 0 1e-2"), {}));
+}
+
+TEST(OutlineFromRings, RefusesCoordinatesThatAreNotFiniteOrTooFar) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {infinity, -infinity, std::nan(""), 1.0001e6, -1e300}) {
+    Points ring = PointsOf("0 0, 10 0, 10 10, 0 10");
+    ring(2, 1) = bad;
+    const auto outline = OutlineFromRings(ring, {});
+    ASSERT_THAT(outline, FailsWith(ErrorCode::kInvalidOption, "point 2"));
+    EXPECT_EQ(outline.error().where[0].field, "outline[2]");
+    const auto as_hole = OutlineFromRings(PointsOf("0 0, 20 0, 20 20, 0 20"), Rings{ring});
+    ASSERT_THAT(as_hole, FailsWith(ErrorCode::kInvalidOption, "hole 0"));
+    EXPECT_EQ(as_hole.error().where[0].field, "holes[0][2]");
+  }
+  EXPECT_TRUE(OutlineFromRings(PointsOf("-1e6 -1e6, 1e6 -1e6, 1e6 1e6"), {}));
+}
+
+TEST(OutlineFromRings, CountsPointsAgainstTheLimit) {
+  const Points ring = RegularPolygon(100, 50.0);
+  EXPECT_TRUE(OutlineFromRings(ring, {}, {.max_points = 100}));
+  EXPECT_THAT(OutlineFromRings(ring, {}, {.max_points = 99}),
+              FailsWith(ErrorCode::kOutlineTooLong, "at most 99"));
+  const Rings holes(40, PointsOf("0 0, 1 0, 1 1"));
+  EXPECT_THAT(OutlineFromRings(ring, holes, {.max_points = 119}),
+              FailsWith(ErrorCode::kOutlineTooLong, "holes"));
+}
+
+TEST(OutlineFromRings, WantsHolesInsideTheOutlineAndApart) {
+  const Points square = PointsOf("0 0, 10 0, 10 10, 0 10");
+  const Points hole = PointsOf("2 2, 6 2, 6 6, 2 6");
+  EXPECT_TRUE(OutlineFromRings(square, Rings{hole, PointsOf("7 7, 8 7, 8 8")}));
+  EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("8 2, 12 2, 12 6, 8 6")}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "hole 0: edge"));
+  EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("12 2, 16 2, 16 6")}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "outside"));
+  EXPECT_THAT(OutlineFromRings(square, Rings{hole, PointsOf("3 3, 4 3, 4 4")}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "hole 1 lies inside hole 0"));
+  EXPECT_THAT(OutlineFromRings(square, Rings{hole, PointsOf("5 5, 8 5, 8 8, 5 8")}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "of hole 0 near"));
+  EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("2 2, 6 6, 6 2, 2 6")}),
+              FailsWith(ErrorCode::kOutlineNotSimple, "hole 0: edge 0 meets edge 2"));
+}
+
+double PaintedArea(const Texture& texture) {
+  double sum = 0.0;
+  for (std::size_t k = 3; k < texture.image.rgba.size(); k += 4) sum += texture.image.rgba[k];
+  return sum / 255.0 / (texture.scale * texture.scale);
+}
+
+TEST(PaintRings, PaintsExactlyTheAreaBetweenTheRings) {
+  const auto outline =
+      OutlineFromRings(RegularPolygon(90, 37.0),
+                       Rings{PointsOf("-9 -7, 11.3 -4, 3 13.7"),
+                             RegularPolygon(30, 2.0).rowwise() + Eigen::RowVector2d(-20, 10)});
+  ASSERT_TRUE(outline) << outline.error().message;
+  const double area =
+      SignedArea(outline->outer) + SignedArea(outline->holes[0]) + SignedArea(outline->holes[1]);
+  for (const int size : {32, 200, 512}) {
+    EXPECT_NEAR(PaintedArea(PaintRings(*outline, size)), area, 0.002 * area) << size;
+  }
+}
+
+TEST(PaintRings, SaysWhereItsTexelsLie) {
+  const Points ring = PointsOf("1000 -500, 1200 -500, 1200 -400, 1100 -450, 1000 -400");
+  const auto outline = OutlineFromRings(ring, {});
+  ASSERT_TRUE(outline) << outline.error().message;
+  const Texture texture = PaintRings(*outline);
+  EXPECT_EQ(texture.image.width, 512 + 4);
+  const auto alpha = [&](double x, double y) {
+    const Point texel = (Point(x, y) - texture.origin) * texture.scale;
+    return static_cast<int>(
+        texture.image.at(static_cast<int>(texel.x()), static_cast<int>(texel.y()))[3]);
+  };
+  EXPECT_EQ(alpha(1001, -499), 255);
+  EXPECT_EQ(alpha(1199, -405), 255);
+  EXPECT_EQ(alpha(1100, -452), 255);
+  EXPECT_EQ(alpha(1100, -447), 0);
+  EXPECT_EQ(alpha(999.5, -450), 0);
+}
+
+TEST(PaintRings, TakesThinAndFarRings) {
+  for (const char* ring : {"-1e6 -1e6, 1e6 -1e6, 1e6 1e6", "0 0, 1e6 0, 1e6 1e-6, 0 1e-6",
+                           "1e6 1e6, 999999.99 1e6, 999999.99 999999.99"}) {
+    const auto outline = OutlineFromRings(PointsOf(ring), {});
+    ASSERT_TRUE(outline) << outline.error().message;
+    const Texture texture = PaintRings(*outline, 128);
+    EXPECT_LE(std::max(texture.image.width, texture.image.height), 128 + 5);
+    EXPECT_GT(PaintedArea(texture), 0.0 * texture.scale - 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace posespace
