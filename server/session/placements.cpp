@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include "session/ids.h"
 
 namespace posespace {
 namespace {
@@ -14,7 +17,7 @@ namespace {
 // the poses apart (PoseWeights::Fit).
 constexpr double kClosest = 1e-3;
 
-std::string FieldOf(const std::string& id) { return "placements['" + id + "']"; }
+std::string FieldOf(const std::string& id) { return "placements[" + Quoted(id) + "]"; }
 
 }  // namespace
 
@@ -39,7 +42,7 @@ Result<void> CheckPlacements(std::span<const std::string> ids, const Points& pla
   std::vector<Violation> where;
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!places.row(i).allFinite()) {
-      where.push_back({FieldOf(ids[i]), "the place of shape '" + ids[i] + "' is not finite"});
+      where.push_back({FieldOf(ids[i]), "the place of shape " + Quoted(ids[i]) + " is not finite"});
     }
   }
   if (!where.empty()) {
@@ -58,11 +61,12 @@ Result<void> CheckPlacements(std::span<const std::string> ids, const Points& pla
     return Error{
         ErrorCode::kPlacementNotFinite, "the placements are too far apart for numbers", {}};
   }
+  const bool vanishes = diameter < std::numeric_limits<double>::min();
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
-      if (distance(i, j) >= kClosest * diameter && diameter > 0.0) continue;
-      where.push_back(
-          {FieldOf(ids[i]), "shapes '" + ids[j] + "' and '" + ids[i] + "' lie at the same place"});
+      if (distance(i, j) >= kClosest * diameter && !vanishes) continue;
+      where.push_back({FieldOf(ids[i]), "shapes " + Quoted(ids[j]) + " and " + Quoted(ids[i]) +
+                                            " lie at the same place"});
     }
   }
   if (!where.empty()) {
@@ -78,7 +82,7 @@ Result<void> CheckPlaced(std::span<const std::string> ids, const Placements& pla
   std::vector<Violation> where;
   for (const auto& [id, place] : placements) {
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) {
-      where.push_back({FieldOf(id), "there is no shape '" + id + "'"});
+      where.push_back({FieldOf(id), "there is no shape " + Quoted(id)});
     }
   }
   if (!where.empty()) {
@@ -87,7 +91,7 @@ Result<void> CheckPlaced(std::span<const std::string> ids, const Placements& pla
   }
   for (const std::string& id : ids) {
     if (!placements.contains(id)) {
-      where.push_back({FieldOf(id), "shape '" + id + "' has no place in pose space"});
+      where.push_back({FieldOf(id), "shape " + Quoted(id) + " has no place in pose space"});
     }
   }
   if (!where.empty()) {

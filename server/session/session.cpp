@@ -9,11 +9,9 @@
 namespace posespace {
 namespace {
 
-constexpr std::size_t kMaxIdLength = 63;
-
 Error ShapeNotFound(const std::string& session_id, const std::string& shape_id) {
   return Error{ErrorCode::kShapeNotFound,
-               "session '" + session_id + "' has no shape '" + shape_id + "'",
+               "session '" + session_id + "' has no shape " + Quoted(shape_id),
                {}};
 }
 
@@ -31,8 +29,8 @@ Result<void> CheckTuples(const std::vector<Correspondence>& tuples,
     if (tuples[k].empty()) empty.push_back({field, field + " marks no drawing"});
     for (const auto& [id, point] : tuples[k]) {
       if (std::find(ids.begin(), ids.end(), id) != ids.end()) continue;
-      const std::string mark = field + ".points['" + id + "']";
-      unknown.push_back({mark, field + " marks shape '" + id + "', which is not there"});
+      const std::string mark = field + ".points[" + Quoted(id) + "]";
+      unknown.push_back({mark, field + " marks shape " + Quoted(id) + ", which is not there"});
     }
   }
   if (!unknown.empty()) {
@@ -47,23 +45,6 @@ Result<void> CheckTuples(const std::vector<Correspondence>& tuples,
 }
 
 }  // namespace
-
-Result<void> CheckId(const std::string& what, const std::string& id) {
-  const auto is_alphanumeric = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-  };
-  const bool valid = !id.empty() && id.size() <= kMaxIdLength && is_alphanumeric(id.front()) &&
-                     std::all_of(id.begin(), id.end(), [&](char c) {
-                       return is_alphanumeric(c) || c == '_' || c == '.' || c == '-';
-                     });
-  if (valid) return {};
-  // Longer than any id, and so cut: a message must not grow with what is sent.
-  const std::string shown = id.size() <= kMaxIdLength ? id : id.substr(0, kMaxIdLength) + "...";
-  const std::string message = what + " id '" + shown +
-                              "' is not 1 to 63 of letters, digits, '_', '.', '-', beginning with "
-                              "a letter or digit";
-  return Error{ErrorCode::kInvalidId, message, {{what + "_id", message}}};
-}
 
 Session::Session(std::string id, std::string display_name,
                  std::map<std::string, std::string> labels, const Limits& limits)

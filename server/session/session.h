@@ -12,6 +12,7 @@
 #include "geometry/result.h"
 #include "session/build_job.h"
 #include "session/build_pool.h"
+#include "session/ids.h"
 #include "session/limits.h"
 #include "session/placements.h"
 #include "session/pose_space.h"
@@ -43,10 +44,6 @@ struct SessionView {
   std::string revision;              // empty before the first build
   std::optional<BuildStatus> build;  // the latest
 };
-
-// An id as sessions and shapes have it: 1-63 of letters, digits, '_', '.', '-', beginning with a
-// letter or digit.  Fails with kInvalidId, naming `what` and the id.
-Result<void> CheckId(const std::string& what, const std::string& id);
 
 // The small mutable thing that a caller edits: drawings, correspondences, placements, and the state
 // of its build.  Thread-safe; decoding and tracing run outside its locks.  Edits of one session
