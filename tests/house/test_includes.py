@@ -17,7 +17,7 @@ MAY_USE = {
     "drawing": {"geometry"},
     "store": set(),
     "session": {"geometry", "mapping", "interpolation", "drawing", "store"},
-    "ops": {"geometry"},
+    "ops": {"geometry", "session"},  # session: its limits, which are flags
     "rpc": {"geometry", "mapping", "interpolation", "drawing", "session", "ops"},
 }
 
