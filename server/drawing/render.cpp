@@ -5,12 +5,71 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "drawing/colour_space.h"
 
 namespace posespace {
+
+RenderTexture::RenderTexture(const Texture& texture) : origin_(texture.origin) {
+  const Image& image = texture.image;
+  Level finest{image.width, image.height, texture.scale, {}};
+  finest.texels.resize(image.rgba.size());
+  for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
+    const float alpha = static_cast<float>(image.rgba[k + 3]) / 255.0f;
+    for (int c = 0; c < 3; ++c) finest.texels[k + c] = alpha * LinearFromSrgb(image.rgba[k + c]);
+    finest.texels[k + 3] = alpha;
+  }
+  levels_.push_back(std::move(finest));
+
+  // Each next level averages 2 x 2 texels; beyond the picture all is transparent.
+  while (std::max(levels_.back().width, levels_.back().height) > 1) {
+    const Level& fine = levels_.back();
+    Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, 0.5 * fine.scale, {}};
+    coarse.texels.assign(4 * static_cast<std::size_t>(coarse.width) * coarse.height, 0.0f);
+    for (int y = 0; y < fine.height; ++y) {
+      const float* from = fine.texels.data() + 4 * static_cast<std::size_t>(y) * fine.width;
+      float* to = coarse.texels.data() + 4 * static_cast<std::size_t>(y / 2) * coarse.width;
+      for (int x = 0; x < fine.width; ++x) {
+        for (int c = 0; c < 4; ++c) to[4 * (x / 2) + c] += 0.25f * from[4 * x + c];
+      }
+    }
+    levels_.push_back(std::move(coarse));
+  }
+}
+
+Eigen::Array4f RenderTexture::At(const Point& place, int level) const {
+  const Level& from = levels_[level];
+  const double u = (place.x() - origin_.x()) * from.scale - 0.5;
+  const double v = (place.y() - origin_.y()) * from.scale - 0.5;
+  if (!(u > -1.0 && v > -1.0 && u < from.width && v < from.height)) return Eigen::Array4f::Zero();
+  const int x = static_cast<int>(u + 1.0) - 1, y = static_cast<int>(v + 1.0) - 1;  // floors
+  const float s = static_cast<float>(u - x), t = static_cast<float>(v - y);
+  const float* texel = from.texels.data() + 4 * (static_cast<std::ptrdiff_t>(y) * from.width + x);
+  const std::ptrdiff_t below = 4 * static_cast<std::ptrdiff_t>(from.width);
+  using Texel = Eigen::Map<const Eigen::Array4f>;
+  if (x >= 0 && y >= 0 && x + 1 < from.width && y + 1 < from.height) {
+    return (1.0f - t) * ((1.0f - s) * Texel(texel) + s * Texel(texel + 4)) +
+           t * ((1.0f - s) * Texel(texel + below) + s * Texel(texel + below + 4));
+  }
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      if (x + i < 0 || y + j < 0 || x + i >= from.width || y + j >= from.height) continue;
+      sum += (i == 0 ? 1.0f - s : s) * (j == 0 ? 1.0f - t : t) * Texel(texel + j * below + 4 * i);
+    }
+  }
+  return sum;
+}
+
+int RenderTexture::LevelFor(double length) const {
+  const double texels = length * levels_[0].scale;  // along a pixel
+  if (!(texels > 1.0)) return 0;
+  const double level = std::round(std::log2(texels));
+  return static_cast<int>(std::min<double>(level, static_cast<double>(levels_.size()) - 1));
+}
+
 namespace {
 
 constexpr double kSmallestWeight = 1.0 / 512.0;
@@ -109,11 +168,22 @@ class Canvas {
  public:
   explicit Canvas(const View& view)
       : width_(view.width),
-        texels_(static_cast<std::size_t>(view.width) * view.height, Eigen::Array4f::Zero()) {}
+        texels_(static_cast<std::size_t>(view.width) * view.height, Eigen::Array4f::Zero()),
+        mixing_(view.width) {}
 
-  void Over(std::int64_t x, int y, const Eigen::Array4f& colour) {
-    Eigen::Array4f& below = texels_[static_cast<std::size_t>(y) * width_ + x];
-    below = colour + (1.0f - std::min(colour[3], 1.0f)) * below;
+  // A transparent run of pixels to mix layers in; valid until the next call.
+  std::span<Eigen::Array4f> Mixing(std::int64_t pixels) {
+    std::fill_n(mixing_.begin(), pixels, Eigen::Array4f::Zero());
+    return {mixing_.data(), static_cast<std::size_t>(pixels)};
+  }
+
+  // Lays a run of pixels over those that begin at (x, y).
+  void Over(std::int64_t x, int y, std::span<const Eigen::Array4f> colours) {
+    Eigen::Array4f* below = texels_.data() + static_cast<std::size_t>(y) * width_ + x;
+    for (const Eigen::Array4f& colour : colours) {
+      *below = colour + (1.0f - std::min(colour[3], 1.0f)) * *below;
+      ++below;
+    }
   }
 
   Image ToImage(const View& view) const {
@@ -134,6 +204,7 @@ class Canvas {
  private:
   int width_;
   std::vector<Eigen::Array4f> texels_;
+  std::vector<Eigen::Array4f> mixing_;
 };
 
 // Draws one triangle: from each layer, the texel at the pixel's barycentric place.
@@ -157,86 +228,36 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
   const std::int64_t first_row = std::max<std::int64_t>(0, FloorDivide(low, subpixels));
   const std::int64_t last_row =
       std::min<std::int64_t>(view.height - 1, FloorDivide(high, subpixels));
+  // The place in a pose's drawing of the pixel whose edge functions have these values.
+  const auto place_of = [&](const Points& pose, const std::array<double, 3>& values) -> Point {
+    return ((values[0] * pose.row(v[0]) + values[1] * pose.row(v[1]) + values[2] * pose.row(v[2])) /
+            static_cast<double>(area))
+        .transpose();
+  };
+  const std::array<double, 3> along_x = {static_cast<double>(edges[0].along_x),
+                                         static_cast<double>(edges[1].along_x),
+                                         static_cast<double>(edges[2].along_x)};
   for (int y = static_cast<int>(first_row); y <= last_row; ++y) {
     const auto [first, last] = CoveredSpan(edges, y, view.width);
-    for (std::int64_t x = first; x < last; ++x) {
-      std::array<double, 3> corner_weight;
-      for (int k = 0; k < 3; ++k) {
-        const std::int64_t value = edges[k].origin + x * edges[k].along_x + y * edges[k].along_y;
-        corner_weight[k] = static_cast<double>(value) / static_cast<double>(area);
-      }
-      Eigen::Array4f mixed = Eigen::Array4f::Zero();
-      for (const ActiveLayer& layer : layers) {
-        const Points& pose = *layer.pose;
-        const Point place = (corner_weight[0] * pose.row(v[0]) + corner_weight[1] * pose.row(v[1]) +
-                             corner_weight[2] * pose.row(v[2]))
-                                .transpose();
-        mixed += layer.weight * layer.texture->At(place, layer.level);
-      }
-      canvas->Over(x, y, mixed);
+    if (first >= last) continue;
+    std::array<double, 3> values;
+    for (int k = 0; k < 3; ++k) {
+      values[k] =
+          static_cast<double>(edges[k].origin + first * edges[k].along_x + y * edges[k].along_y);
     }
+    const std::span<Eigen::Array4f> mixed = canvas->Mixing(last - first);
+    for (const ActiveLayer& layer : layers) {
+      const Point from = place_of(*layer.pose, values), step = place_of(*layer.pose, along_x);
+      for (std::size_t i = 0; i < mixed.size(); ++i) {
+        const Point place = from + static_cast<double>(i) * step;
+        mixed[i] += layer.weight * layer.texture->At(place, layer.level);
+      }
+    }
+    canvas->Over(first, y, mixed);
   }
 }
 
 }  // namespace
-
-RenderTexture::RenderTexture(const Texture& texture) : origin_(texture.origin) {
-  const Image& image = texture.image;
-  Level finest{image.width, image.height, texture.scale, {}};
-  finest.texels.resize(image.rgba.size());
-  for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
-    const float alpha = static_cast<float>(image.rgba[k + 3]) / 255.0f;
-    for (int c = 0; c < 3; ++c) finest.texels[k + c] = alpha * LinearFromSrgb(image.rgba[k + c]);
-    finest.texels[k + 3] = alpha;
-  }
-  levels_.push_back(std::move(finest));
-
-  // Each next level averages 2 x 2 texels; beyond the picture all is transparent.
-  while (std::max(levels_.back().width, levels_.back().height) > 1) {
-    const Level& fine = levels_.back();
-    Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, 0.5 * fine.scale, {}};
-    coarse.texels.assign(4 * static_cast<std::size_t>(coarse.width) * coarse.height, 0.0f);
-    for (int y = 0; y < fine.height; ++y) {
-      const float* from = fine.texels.data() + 4 * static_cast<std::size_t>(y) * fine.width;
-      float* to = coarse.texels.data() + 4 * static_cast<std::size_t>(y / 2) * coarse.width;
-      for (int x = 0; x < fine.width; ++x) {
-        for (int c = 0; c < 4; ++c) to[4 * (x / 2) + c] += 0.25f * from[4 * x + c];
-      }
-    }
-    levels_.push_back(std::move(coarse));
-  }
-}
-
-Eigen::Array4f RenderTexture::At(const Point& place, int level) const {
-  const Level& from = levels_[level];
-  const double u = (place.x() - origin_.x()) * from.scale - 0.5;
-  const double v = (place.y() - origin_.y()) * from.scale - 0.5;
-  if (!(u > -1.0 && v > -1.0 && u < from.width && v < from.height)) return Eigen::Array4f::Zero();
-  const int x = static_cast<int>(u + 1.0) - 1, y = static_cast<int>(v + 1.0) - 1;  // floors
-  const float s = static_cast<float>(u - x), t = static_cast<float>(v - y);
-  const float* texel = from.texels.data() + 4 * (static_cast<std::ptrdiff_t>(y) * from.width + x);
-  const std::ptrdiff_t below = 4 * static_cast<std::ptrdiff_t>(from.width);
-  using Texel = Eigen::Map<const Eigen::Array4f>;
-  if (x >= 0 && y >= 0 && x + 1 < from.width && y + 1 < from.height) {
-    return (1.0f - t) * ((1.0f - s) * Texel(texel) + s * Texel(texel + 4)) +
-           t * ((1.0f - s) * Texel(texel + below) + s * Texel(texel + below + 4));
-  }
-  Eigen::Array4f sum = Eigen::Array4f::Zero();
-  for (int j = 0; j < 2; ++j) {
-    for (int i = 0; i < 2; ++i) {
-      if (x + i < 0 || y + j < 0 || x + i >= from.width || y + j >= from.height) continue;
-      sum += (i == 0 ? 1.0f - s : s) * (j == 0 ? 1.0f - t : t) * Texel(texel + j * below + 4 * i);
-    }
-  }
-  return sum;
-}
-
-int RenderTexture::LevelFor(double length) const {
-  const double texels = length * levels_[0].scale;  // along a pixel
-  if (!(texels > 1.0)) return 0;
-  const double level = std::round(std::log2(texels));
-  return static_cast<int>(std::min<double>(level, static_cast<double>(levels_.size()) - 1));
-}
 
 View FitView(const Point& low, const Point& high, int width, int height) {
   const Point extent = high - low;
