@@ -29,8 +29,8 @@ std::vector<Corner> CornersOnCircle(int n, std::uint64_t seed) {
   for (int k = 0; k < n; ++k) {
     const double jitter = static_cast<double>(random() >> 11) * 0x1p-53;
     const double angle = 2.0 * std::numbers::pi * (k + 0.5 * jitter) / n;
-    corners.push_back({std::llround(kRadius * std::cos(angle)),
-                       std::llround(kRadius * std::sin(angle))});
+    corners.push_back(
+        {std::llround(kRadius * std::cos(angle)), std::llround(kRadius * std::sin(angle))});
   }
   return corners;
 }
@@ -162,8 +162,8 @@ std::optional<ChordArrangement> ArrangeChords(int num_corners, std::span<const C
     }
     along.push_back(chords[c].second);
   }
-  arrangement.faces = FacesOf(
-      num_corners, NeighboursOf(num_corners, chords, arrangement, crossings));
+  arrangement.faces =
+      FacesOf(num_corners, NeighboursOf(num_corners, chords, arrangement, crossings));
   return arrangement;
 }
 

@@ -15,16 +15,17 @@ namespace posespace {
 // and then one for each crossing of two chords.
 struct ChordArrangement {
   int num_vertices = 0;
-  std::vector<std::vector<int>> along;  // per chord: its vertices from first end to second, with them
+  std::vector<std::vector<int>>
+      along;  // per chord: its vertices from first end to second, with them
   std::vector<std::vector<int>> faces;  // vertices in positive order, each face strictly convex
 };
 
 // How many pairs of the chords cross.  Requires distinct chords.
 std::int64_t CountCrossings(std::span<const Chord> chords);
 
-// Draws the chords in a K-gon with corners at random angles on a circle, in integer coordinates, and
-// decides the order of crossings in exact integers.  Nothing when three chords meet in one point or
-// the K-gon is not strictly convex: draw again with another seed.
+// Draws the chords in a K-gon with corners at random angles on a circle, in integer coordinates,
+// and decides the order of crossings in exact integers.  Nothing when three chords meet in one
+// point or the K-gon is not strictly convex: draw again with another seed.
 //
 // Requires  distinct chords, none a side.
 // Cost      O(C^2 + X log X) for C chords and X crossings.

@@ -24,8 +24,8 @@ bool IsPositivelyOriented(const Points& ring) {
   for (Eigen::Index k = 1; k < n; ++k) {
     if (std::pair(ring(k, 0), ring(k, 1)) < std::pair(ring(lowest, 0), ring(lowest, 1))) lowest = k;
   }
-  return Orientation(ring.row((lowest + n - 1) % n), ring.row(lowest),
-                     ring.row((lowest + 1) % n)) > 0;
+  return Orientation(ring.row((lowest + n - 1) % n), ring.row(lowest), ring.row((lowest + 1) % n)) >
+         0;
 }
 
 Result<void> Check(std::span<const Points> outlines, std::span<const int> landmark_rows,
@@ -76,8 +76,8 @@ CompatibleMesh MeshWithoutSteiner(std::span<const Points> outlines,
   mesh.poses.assign(outlines.begin(), outlines.end());
   mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    mesh.triangles.row(static_cast<Eigen::Index>(t))
-        << triangles[t][0], triangles[t][1], triangles[t][2];
+    mesh.triangles.row(static_cast<Eigen::Index>(t)) << triangles[t][0], triangles[t][1],
+        triangles[t][2];
   }
   mesh.boundary.emplace_back(outlines[0].rows());
   std::iota(mesh.boundary[0].begin(), mesh.boundary[0].end(), 0);
@@ -104,8 +104,7 @@ Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
 
   if (!triangles || FindDefect(result.mesh)) {
     result.used_overlay = true;
-    result.mesh =
-        TRY(TriangulateByOverlay(outlines, options.max_vertices, options.seed, progress));
+    result.mesh = TRY(TriangulateByOverlay(outlines, options.max_vertices, options.seed, progress));
     result.overlay_vertices = result.mesh.num_vertices() - n;
     Report(progress, 0.6);
     EditableMesh editable(result.mesh);

@@ -2,7 +2,6 @@
 #include "mapping/decimation.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,7 +22,7 @@ int RemoveVertices(EditableMesh& mesh, Progress* progress) {
   int removed = 0;
   for (const auto& [degree, v] : order) {
     if (IsCancelled(progress)) break;
-    removed += RemoveVertex(mesh, v, std::numeric_limits<double>::infinity()) ? 1 : 0;
+    removed += RemoveVertex(mesh, v, kAnySharpness) ? 1 : 0;
   }
   return removed;
 }
@@ -64,8 +63,7 @@ void Decimate(EditableMesh& mesh, Progress* progress) {
     int removed = 0;
     while (const int more = RemoveVertices(mesh, progress)) removed += more;
     idle = removed > 0 ? 0 : idle + 1;
-    FlipEdges(mesh, {}, progress);
-    for (int sweep = 0; sweep < kSweeps; ++sweep) SmoothVertices(mesh, {}, progress);
+    Relax(mesh, 1, kSweeps, kAnySharpness, progress);
   }
 }
 

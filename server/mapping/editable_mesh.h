@@ -12,7 +12,8 @@
 
 namespace posespace {
 
-// A compatible mesh whose connectivity and interior vertices change, one connectivity for all poses.
+// A compatible mesh whose connectivity and interior vertices change, one connectivity for all
+// poses.
 //
 // It keeps the books and judges nothing: callers test positions (IsPositive) before they change
 // anything.  Vertices keep their numbers until Finish().  One owner; not shared.
@@ -49,8 +50,8 @@ class EditableMesh {
   std::vector<std::pair<int, int>> InteriorEdges() const;
   std::vector<std::pair<int, int>> AllEdges() const;
 
-  bool IsPositive(int pose, int a, int b, int c) const;      // exact
-  bool IsPositiveInAllPoses(int a, int b, int c) const;      // exact
+  bool IsPositive(int pose, int a, int b, int c) const;  // exact
+  bool IsPositiveInAllPoses(int a, int b, int c) const;  // exact
 
   // Replaces the edge ab by the other diagonal of its two triangles.
   void Flip(int a, int b);

@@ -3,32 +3,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
-#include <queue>
 #include <utility>
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "mapping/decimation.h"
 #include "mapping/editable_mesh.h"
-#include "mapping/mesh_relaxation.h"
 #include "mapping/mesh_refinement.h"
+#include "mapping/mesh_relaxation.h"
 #include "mapping/triangle_quality.h"
 
 namespace posespace {
 namespace {
 
-constexpr int kRounds = 4;        // of refinement, each followed by relaxation
-constexpr int kSweeps = 4;        // of smoothing in a round
-constexpr int kFinalRounds = 12;  // of flips and smoothing at the end, at most
+// Rounds of refinement, each followed by relaxation.  The longest edge allowed comes down by
+// kDescent a round, so that later rounds split edges of a mesh that is already in shape.
+constexpr int kRounds = 10;
+constexpr double kDescent = 1.2;
+constexpr double kLongest = 1.4;   // targets, in the last two rounds
+constexpr double kShortest = 0.5;  // targets
+constexpr int kSweeps = 4;         // of smoothing between flips
+constexpr int kFinalRounds = 12;   // of flips and smoothing, at most
 
-void Relax(EditableMesh& mesh, int rounds, int sweeps, double sharpest, Progress* progress) {
-  for (int round = 0; round < rounds && !IsCancelled(progress); ++round) {
-    int changes = FlipEdges(mesh, {sharpest}, progress);
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-      changes += SmoothVertices(mesh, {sharpest}, progress);
+double Cotangent(double degrees) { return 1.0 / std::tan(degrees * std::numbers::pi / 180.0); }
+
+double SharpestOf(const CompatibleMesh& mesh) {
+  double sharpest = 0.0;
+  for (const Points& pose : mesh.poses) {
+    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+      const auto corners = mesh.triangles.row(t);
+      sharpest = std::max(
+          sharpest, Sharpness(pose.row(corners[0]), pose.row(corners[1]), pose.row(corners[2])));
     }
-    if (changes == 0) break;
+  }
+  return sharpest;
+}
+
+// Refines by length.  A triangle that is not as sharp as `tradable` may become so on the way.
+CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable,
+                              const ImprovementOptions& options, Progress* progress) {
+  const double sharp = Cotangent(15.0);
+  const double sharpest = std::max(tradable, SharpestOf(mesh));
+  const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
+  EditableMesh editable(mesh);
+  Relax(editable, 2, kSweeps, tradable, progress);
+  for (int round = 0; round < kRounds && !IsCancelled(progress); ++round) {
+    const double longest = kLongest * std::pow(kDescent, std::max(0, kRounds - 2 - round));
+    SplitLongEdges(editable, targets, longest, sharpest, options.max_vertices, progress);
+    Relax(editable, 2, kSweeps, tradable, progress);
+    CollapseShortEdges(editable, targets, kShortest, tradable, progress);
+    RemoveAtSharpTriangles(editable, sharp, progress);
+    Report(progress, (round + 1.0) / (kRounds + 1.0));
+  }
+  Relax(editable, kFinalRounds, 2, tradable, progress);
+  return editable.Finish();
+}
+
+// Cuts triangles into quarters, which keeps every angle, and makes the smallest no smaller.
+CompatibleMesh RefineByQuarters(CompatibleMesh mesh, const ImprovementOptions& options,
+                                Progress* progress) {
+  const double sharpest = SharpestOf(mesh);
+  const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
+  for (;;) {
+    EditableMesh editable(mesh);
+    Relax(editable, kFinalRounds, kSweeps, sharpest, progress);
+    mesh = editable.Finish();
+    const Eigen::Index finer = mesh.num_vertices() + EdgesOf(mesh.triangles).rows();
+    if (IsCancelled(progress) || LongestEdge(editable, targets) <= kLongest ||
+        finer > options.max_vertices || !QuarterTriangles(mesh)) {
+      return mesh;
+    }
   }
 }
 
@@ -36,25 +81,23 @@ void Relax(EditableMesh& mesh, int rounds, int sweeps, double sharpest, Progress
 
 Result<CompatibleMesh> ImproveMesh(CompatibleMesh mesh, const ImprovementOptions& options,
                                    Progress* progress) {
+  // Free trade between angles gives the best mesh.  It may end below a good mesh's smallest angle;
+  // then that is the limit of trade; and where nothing can be split within it, quarters are left.
   const double given = MinAngle(mesh);
-  const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
-  EditableMesh editable(mesh);
-  const double comfortable = 1.0 / std::tan(std::numbers::pi / 9.0);
-
-  Relax(editable, 2, kSweeps, comfortable, progress);
-  for (int round = 0; round < kRounds; ++round) {
-    SplitLongEdges(editable, targets, options.max_vertices, progress);
-    Relax(editable, 2, kSweeps, comfortable, progress);
-    CollapseShortEdges(editable, targets, comfortable, progress);
-    Report(progress, (round + 1.0) / (kRounds + 2.0));
+  CompatibleMesh improved = RefineByLength(mesh, Cotangent(5.0), options, progress);
+  if (MinAngle(improved) < given) {
+    improved = RefineByLength(mesh, SharpestOf(mesh), options, progress);
+    const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
+    if (MinAngle(improved) < given ||
+        LongestEdge(EditableMesh(improved), targets) > 2.0 * kLongest) {
+      improved = RefineByQuarters(std::move(mesh), options, progress);
+    }
   }
-  Relax(editable, kFinalRounds, 2, comfortable, progress);
   if (IsCancelled(progress)) {
     return Error{ErrorCode::kCancelled, "mesh improvement was cancelled", {}};
   }
-  CompatibleMesh improved = editable.Finish();
-  if (MinAngle(improved) >= given && !FindDefect(improved)) return improved;
-  return mesh;
+  Report(progress, 1.0);
+  return improved;
 }
 
 }  // namespace posespace

@@ -9,21 +9,35 @@
 #include "geometry/progress.h"
 #include "mapping/editable_mesh.h"
 
+// Steps that change how fine a mesh is.  Every triangle stays positive in every pose (exact).  The
+// length of an edge is in targets: the largest, over poses, of its length / that pose's target.
+
 namespace posespace {
 
-// Per pose, `relative` / size of the drawing in drawing units.
+// Per pose, `relative` sizes of the drawing.
 std::vector<double> TargetLengths(const CompatibleMesh& mesh, double relative);
 
-// Splits edges, longest first, until each is shorter than 1.4 targets in all poses or the mesh has
-// `max_vertices`.  The length of an edge is max over poses of length / target.  Edges whose split
-// would leave a triangle that is not positive stay whole.  Returns the number of splits.
-int SplitLongEdges(EditableMesh& mesh, std::span<const double> targets, int max_vertices,
-                   Progress* progress);
+// The length of the longest edge.
+double LongestEdge(const EditableMesh& mesh, std::span<const double> targets);
 
-// Removes interior vertices with an edge shorter than half its target in all poses, where the hole
-// can be filled without a triangle sharper than `sharpest`.  Returns the number of vertices removed.
-int CollapseShortEdges(EditableMesh& mesh, std::span<const double> targets, double sharpest,
-                       Progress* progress);
+// Splits edges in the middle, longest first, until none is longer than `longest` or the mesh has
+// `max_vertices`.  Edges stay whole whose split would leave a triangle that is not positive, or one
+// sharper (triangle_quality.h) than `sharpest`.
+void SplitLongEdges(EditableMesh& mesh, std::span<const double> targets, double longest,
+                    double sharpest, int max_vertices, Progress* progress);
+
+// Removes interior vertices with an edge shorter than `shortest` where that leaves no triangle
+// sharper than `sharpest`.
+void CollapseShortEdges(EditableMesh& mesh, std::span<const double> targets, double shortest,
+                        double sharpest, Progress* progress);
+
+// Removes interior vertices at triangles sharper than `sharpest`, sharpest first, where that leaves
+// only triangles that are less sharp.
+void RemoveAtSharpTriangles(EditableMesh& mesh, double sharpest, Progress* progress);
+
+// Cuts every triangle into four of its shape at the middles of its sides.  Returns false, with the
+// mesh as it was, when rounding would leave a triangle that is not positive.
+bool QuarterTriangles(CompatibleMesh& mesh);
 
 }  // namespace posespace
 

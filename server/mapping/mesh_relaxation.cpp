@@ -14,11 +14,8 @@
 namespace posespace {
 namespace {
 
-// The share of the energy that one triangle has: high powers care for the worst triangles.
-double Energy(double distortion) {
-  const double square = distortion * distortion;
-  return square * square;
-}
+// The energy of one triangle.  Higher powers would lift the worst angles at the cost of the median.
+double Energy(double distortion) { return distortion * distortion; }
 
 struct StarQuality {
   double energy = 0.0;
@@ -70,26 +67,24 @@ Point Step(const EditableMesh& mesh, int pose, const Sides& sides, const Point& 
     const Eigen::Vector2d q_gradient = k * sum_gradient - q * relative;
     Eigen::Matrix2d q_hessian = 4.0 * k * Eigen::Matrix2d::Identity();
     q_hessian -= relative * q_gradient.transpose() + q_gradient * relative.transpose();
-    // d^4/dq^4 chain rule for the energy q^4.
-    gradient += 4.0 * q * q * q * q_gradient;
-    hessian += 4.0 * q * q * q * q_hessian + 12.0 * q * q * q_gradient * q_gradient.transpose();
+    gradient += 2.0 * q * q_gradient;
+    hessian += 2.0 * (q * q_hessian + q_gradient * q_gradient.transpose());
   }
   const Point step = -hessian.inverse() * gradient;
   if (step.allFinite() && step.dot(gradient) < 0.0) return step;
   return middle / static_cast<double>(sides.size()) - at;
 }
 
-bool SmoothVertex(EditableMesh& mesh, int pose, int v, const Sides& sides,
-                  const RelaxationLimit& limit) {
+bool SmoothVertex(EditableMesh& mesh, int pose, int v, const Sides& sides, double sharpest) {
   constexpr double kLeastGain = 1e-4;
   const Point from = mesh.At(pose, v);
   const StarQuality before = QualityAt(mesh, pose, sides, from);
-  const double sharpest = std::max(before.sharpest, limit.sharpest);
+  const double allowed = std::max(before.sharpest, sharpest);
   const Point step = Step(mesh, pose, sides, from);
   for (const double fraction : {1.0, 0.5, 0.25, 0.1, 0.03}) {
     const Point to = from + fraction * step;
     const StarQuality after = QualityAt(mesh, pose, sides, to);
-    if (!(after.energy < before.energy * (1.0 - kLeastGain)) || after.sharpest > sharpest) continue;
+    if (!(after.energy < before.energy * (1.0 - kLeastGain)) || after.sharpest > allowed) continue;
     mesh.Move(pose, v, to);
     const bool valid = std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
       return mesh.IsPositive(pose, v, side.first, side.second);
@@ -100,7 +95,7 @@ bool SmoothVertex(EditableMesh& mesh, int pose, int v, const Sides& sides,
   return false;
 }
 
-bool FlipEdge(EditableMesh& mesh, int a, int b, const RelaxationLimit& limit) {
+bool FlipEdge(EditableMesh& mesh, int a, int b, double sharpest) {
   constexpr double kLeastGain = 1e-3;
   const int c = mesh.Opposite(a, b), d = mesh.Opposite(b, a);
   if (c < 0 || d < 0 || mesh.HasEdge(c, d)) return false;
@@ -114,7 +109,7 @@ bool FlipEdge(EditableMesh& mesh, int a, int b, const RelaxationLimit& limit) {
     after.Add(pd, pb, pc);
   }
   if (!(after.energy < before.energy * (1.0 - kLeastGain))) return false;
-  if (after.sharpest > std::max(before.sharpest, limit.sharpest)) return false;
+  if (after.sharpest > std::max(before.sharpest, sharpest)) return false;
   if (!mesh.IsPositiveInAllPoses(c, a, d) || !mesh.IsPositiveInAllPoses(d, b, c)) return false;
   mesh.Flip(a, b);
   return true;
@@ -122,7 +117,7 @@ bool FlipEdge(EditableMesh& mesh, int a, int b, const RelaxationLimit& limit) {
 
 }  // namespace
 
-int SmoothVertices(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progress) {
+int SmoothVertices(EditableMesh& mesh, double sharpest, Progress* progress) {
   int moved = 0;
   for (int v = 0; v < mesh.num_vertices(); ++v) {
     if (IsCancelled(progress)) break;
@@ -130,14 +125,14 @@ int SmoothVertices(EditableMesh& mesh, const RelaxationLimit& limit, Progress* p
     const Sides sides = SidesAround(mesh, v);
     bool any = false;
     for (int pose = 0; pose < mesh.num_poses(); ++pose) {
-      any = SmoothVertex(mesh, pose, v, sides, limit) || any;
+      any = SmoothVertex(mesh, pose, v, sides, sharpest) || any;
     }
     moved += any ? 1 : 0;
   }
   return moved;
 }
 
-int FlipEdges(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progress) {
+int FlipEdges(EditableMesh& mesh, double sharpest, Progress* progress) {
   int flips = 0;
   std::vector<std::pair<int, int>> open = mesh.InteriorEdges();
   while (!open.empty() && !IsCancelled(progress)) {
@@ -145,7 +140,7 @@ int FlipEdges(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progre
     for (const auto& [a, b] : open) {
       if (IsCancelled(progress)) break;
       const int c = mesh.Opposite(a, b), d = mesh.Opposite(b, a);
-      if (!FlipEdge(mesh, a, b, limit)) continue;
+      if (!FlipEdge(mesh, a, b, sharpest)) continue;
       ++flips;
       for (const int end : {a, b}) {
         for (const int apex : {c, d}) next.push_back(std::minmax(end, apex));
@@ -156,6 +151,16 @@ int FlipEdges(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progre
     open = std::move(next);
   }
   return flips;
+}
+
+void Relax(EditableMesh& mesh, int rounds, int sweeps, double sharpest, Progress* progress) {
+  for (int round = 0; round < rounds && !IsCancelled(progress); ++round) {
+    int changes = FlipEdges(mesh, sharpest, progress);
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      changes += SmoothVertices(mesh, sharpest, progress);
+    }
+    if (changes == 0) break;
+  }
 }
 
 }  // namespace posespace

@@ -7,24 +7,24 @@
 #include "geometry/progress.h"
 #include "mapping/editable_mesh.h"
 
+// Steps that lower the energy of a mesh: the sum of squared Distortion (triangle_quality.h) over
+// all triangles and poses.  Every triangle stays positive (exact).  `sharpest` limits what a step
+// may give up: where it leaves a triangle of larger Sharpness, one as sharp was there before.
+
 namespace posespace {
 
-// What relaxation may not do while it lowers the mesh's energy, the sum over triangles and poses of
-// a power of Distortion (triangle_quality.h).
-struct RelaxationLimit {
-  // A step may make angles smaller only as long as they stay wider than this: the largest
-  // Sharpness that a step may create where there was none as large.
-  double sharpest = std::numeric_limits<double>::infinity();
-};
+inline constexpr double kAnySharpness = std::numeric_limits<double>::infinity();
 
 // Moves each interior vertex once, in each pose on its own, towards the minimum of the energy of
-// its triangles, which is convex where they are positive.  Returns how many vertices moved.  Every
-// triangle stays positive (exact).  Cost O(N V).
-int SmoothVertices(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progress);
+// its triangles, which is convex where they are positive.  Returns how many vertices moved.
+// Cost O(N V).
+int SmoothVertices(EditableMesh& mesh, double sharpest, Progress* progress);
 
-// Flips interior edges while that lowers the energy over all poses.  Every triangle stays positive
-// (exact).  Ends because each flip lowers the energy.  Returns how many flips were made.
-int FlipEdges(EditableMesh& mesh, const RelaxationLimit& limit, Progress* progress);
+// Flips interior edges while that lowers the energy, which ends.  Returns how many were flipped.
+int FlipEdges(EditableMesh& mesh, double sharpest, Progress* progress);
+
+// Alternates flips and `sweeps` of smoothing until nothing changes, `rounds` times at most.
+void Relax(EditableMesh& mesh, int rounds, int sweeps, double sharpest, Progress* progress);
 
 }  // namespace posespace
 

@@ -33,9 +33,7 @@ class CrossingCounter {
     }
   }
 
-  int Count(int i, int j) const {
-    return Within(i + 1, j, j + 1, n_) + Within(0, i, i + 1, j);
-  }
+  int Count(int i, int j) const { return Within(i + 1, j, j + 1, n_) + Within(0, i, i + 1, j); }
   bool Contains(int i, int j) const { return Within(i, i + 1, j, j + 1) != 0; }
 
  private:
@@ -94,8 +92,7 @@ std::vector<Chord> CheapestChords(const Points& outline, const ChordTable& insid
 
 }  // namespace
 
-std::vector<std::vector<Chord>> ChooseChords(std::span<const Points> outlines,
-                                             Progress* progress) {
+std::vector<std::vector<Chord>> ChooseChords(std::span<const Points> outlines, Progress* progress) {
   const int n = static_cast<int>(outlines[0].rows());
   std::vector<ChordTable> inside;
   for (const Points& outline : outlines) inside.emplace_back(n).KeepChordsInside(outline);
@@ -111,7 +108,8 @@ std::vector<std::vector<Chord>> ChooseChords(std::span<const Points> outlines,
       const CrossingCounter others(n, UnionOf(chosen, s));
       const auto chord_cost = [&](int i, int j) {
         if (others.Contains(i, j)) return 0.0;
-        const double prior = round == 0 ? kStrangerCost * static_cast<double>(strangers(i, j)) : 0.0;
+        const double prior =
+            round == 0 ? kStrangerCost * static_cast<double>(strangers(i, j)) : 0.0;
         return others.Count(i, j) + prior;
       };
       chosen[s] = CheapestChords(outlines[s], inside[s], chord_cost, progress);

@@ -41,8 +41,8 @@ Result<void> PlaceByTutte(const Edges& edges, const std::vector<char>& placed, P
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(count, 2);
   for (Eigen::Index e = 0; e < edges.rows(); ++e) {
-    for (const auto& [v, w] : {std::pair(edges(e, 0), edges(e, 1)),
-                               std::pair(edges(e, 1), edges(e, 0))}) {
+    for (const auto& [v, w] :
+         {std::pair(edges(e, 0), edges(e, 1)), std::pair(edges(e, 1), edges(e, 0))}) {
       if (unknown[v] < 0) continue;
       entries.emplace_back(unknown[v], unknown[v], 1.0);
       if (unknown[w] >= 0) {
@@ -118,8 +118,7 @@ Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines, in
     const Edges edges = EdgesOf(mesh.triangles);
     for (std::size_t s = 0; s < outlines.size(); ++s) {
       if (IsCancelled(progress)) return cancelled;
-      mesh.poses.push_back(
-          TRY(Embed(outlines[s], chords, chords_of[s], *arrangement, edges)));
+      mesh.poses.push_back(TRY(Embed(outlines[s], chords, chords_of[s], *arrangement, edges)));
     }
     if (!FindDefect(mesh)) return mesh;
   }

@@ -13,9 +13,10 @@
 
 namespace posespace {
 
-// The triangulation that N rings of n rows share without any Steiner vertex and whose smallest angle
-// over all rings is largest; nothing when they share none, or when cancelled.  Triangles are rows of
-// the rings, positive in every ring by an exact predicate.  `forbidden` chords are not used.
+// The triangulation that N rings of n rows share without any Steiner vertex and whose smallest
+// angle over all rings is largest; nothing when they share none, or when cancelled.  Triangles are
+// rows of the rings, positive in every ring by an exact predicate.  `forbidden` chords are not
+// used.
 //
 // Requires  simple, positively oriented rings.
 // Cost      O(N n^3).
