@@ -21,10 +21,11 @@ namespace {
 // kDescent a round, so that later rounds split edges of a mesh that is already in shape.
 constexpr int kRounds = 10;
 constexpr double kDescent = 1.2;
-constexpr double kLongest = 1.4;   // targets, in the last two rounds
-constexpr double kShortest = 0.5;  // targets
-constexpr int kSweeps = 4;         // of smoothing between flips
-constexpr int kFinalRounds = 12;   // of flips and smoothing, at most
+constexpr double kLongest = 1.4;     // targets, in the last two rounds
+constexpr double kShortest = 0.5;    // targets
+constexpr double kFineEnough = 2.0;  // times kLongest, where angles forbid more
+constexpr int kSweeps = 4;           // of smoothing between flips
+constexpr int kFinalRounds = 12;     // of flips and smoothing, at most
 
 double Cotangent(double degrees) { return 1.0 / std::tan(degrees * std::numbers::pi / 180.0); }
 
@@ -60,19 +61,20 @@ CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable,
   return editable.Finish();
 }
 
-// Cuts triangles into quarters, which keeps every angle, and makes the smallest no smaller.
-CompatibleMesh RefineByQuarters(CompatibleMesh mesh, const ImprovementOptions& options,
-                                Progress* progress) {
-  const double sharpest = SharpestOf(mesh);
+// Refines by length with the mesh's smallest angle as the limit of trade.  Where that forbids most
+// splits, as in a square of two triangles, it starts again from quarters, which keep every angle.
+CompatibleMesh RefineKeepingAngles(CompatibleMesh mesh, const ImprovementOptions& options,
+                                   Progress* progress) {
+  const double given = MinAngle(mesh), sharpest = SharpestOf(mesh);
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   for (;;) {
-    EditableMesh editable(mesh);
-    Relax(editable, kFinalRounds, kSweeps, sharpest, progress);
-    mesh = editable.Finish();
+    CompatibleMesh improved = RefineByLength(mesh, sharpest, options, progress);
+    if (MinAngle(improved) < given) improved = mesh;
     const Eigen::Index finer = mesh.num_vertices() + EdgesOf(mesh.triangles).rows();
-    if (IsCancelled(progress) || LongestEdge(editable, targets) <= kLongest ||
+    if (IsCancelled(progress) ||
+        LongestEdge(EditableMesh(improved), targets) <= kFineEnough * kLongest ||
         finer > options.max_vertices || !QuarterTriangles(mesh)) {
-      return mesh;
+      return improved;
     }
   }
 }
@@ -81,17 +83,11 @@ CompatibleMesh RefineByQuarters(CompatibleMesh mesh, const ImprovementOptions& o
 
 Result<CompatibleMesh> ImproveMesh(CompatibleMesh mesh, const ImprovementOptions& options,
                                    Progress* progress) {
-  // Free trade between angles gives the best mesh.  It may end below a good mesh's smallest angle;
-  // then that is the limit of trade; and where nothing can be split within it, quarters are left.
+  // Free trade between angles makes the best mesh, but may end below a good mesh's smallest angle.
   const double given = MinAngle(mesh);
   CompatibleMesh improved = RefineByLength(mesh, Cotangent(5.0), options, progress);
   if (MinAngle(improved) < given) {
-    improved = RefineByLength(mesh, SharpestOf(mesh), options, progress);
-    const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
-    if (MinAngle(improved) < given ||
-        LongestEdge(EditableMesh(improved), targets) > 2.0 * kLongest) {
-      improved = RefineByQuarters(std::move(mesh), options, progress);
-    }
+    improved = RefineKeepingAngles(std::move(mesh), options, progress);
   }
   if (IsCancelled(progress)) {
     return Error{ErrorCode::kCancelled, "mesh improvement was cancelled", {}};
