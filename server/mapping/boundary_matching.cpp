@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/boundary_matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "geometry/polygon.h"
+#include "mapping/common_rows.h"
+#include "mapping/landmark_completion.h"
+#include "mapping/landmark_marks.h"
+#include "mapping/matching_confidence.h"
+#include "mapping/matching_tree.h"
+#include "mapping/outline_curve.h"
+#include "mapping/outline_map.h"
+#include "mapping/pair_matching.h"
+
+namespace posespace {
+namespace {
+
+constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have been compared
+constexpr int kCycleSamples = 64;     // at which direct and composed maps are compared
+
+std::vector<OutlineCurve> CurvesOf(std::span<const MatchingShape> shapes) {
+  std::vector<OutlineCurve> curves;
+  for (const MatchingShape& shape : shapes) curves.emplace_back(shape.outline, shape.colours);
+  return curves;
+}
+
+// Matches N drawings given in an order that does not depend on the caller's.
+class GroupMatching {
+ public:
+  GroupMatching(std::vector<OutlineCurve> curves, Marks marks, const MatchingOptions& options,
+                Progress* progress)
+      : curves_(std::move(curves)),
+        marks_(std::move(marks)),
+        options_(options),
+        progress_(progress),
+        n_(static_cast<int>(curves_.size())) {}
+
+  // False when cancelled.
+  bool Run() { return ComparePairs() && FillLandmarks() && MatchAlongTree(); }
+
+  // All drawings' rows; the landmark rows are those of marks' landmarks.
+  CommonRows Rows() const {
+    std::vector<PlacedLandmark> landmarks;
+    for (std::size_t l = 0; l < marks_.on.size(); ++l) {
+      landmarks.push_back({positions_[l][tree_.root], marks_.on[l]});
+    }
+    return ShareRows(curves_, maps_, landmarks);
+  }
+
+  std::vector<double> Confidence() const {
+    MatchingEvidence evidence{costs_, mirrored_costs_, Eigen::MatrixXd::Zero(n_, n_)};
+    for (int i = 0; i < n_; ++i) {
+      const OutlineMap to_common = maps_[i].Inverse();
+      for (int j = i + 1; j < n_; ++j) {
+        double sum = 0.0;
+        for (int k = 0; k < kCycleSamples; ++k) {
+          const double position = static_cast<double>(k) / kCycleSamples;
+          const double turns = maps_[j].At(to_common.At(position)) - Pair(i, j).map.At(position);
+          sum += std::abs(turns - std::round(turns));
+        }
+        evidence.cycle_errors(i, j) = evidence.cycle_errors(j, i) = sum / kCycleSamples;
+      }
+    }
+    return ConfidenceOf(evidence);
+  }
+
+ private:
+  struct ComparedPair {
+    PairWeights weights;
+    OutlineMap map;
+    std::vector<double> starts;
+  };
+  const ComparedPair& Pair(int i, int j) const { return pairs_[i * n_ + j]; }
+
+  // The landmarks that both drawings mark, along drawing i.
+  std::vector<Anchor> MarkedAnchors(int i, int j) const {
+    std::vector<Anchor> anchors;
+    for (const auto& on : marks_.on) {
+      if (on[i] && on[j]) anchors.push_back({on[i]->position, on[j]->position});
+    }
+    std::sort(anchors.begin(), anchors.end(),
+              [](const Anchor& a, const Anchor& b) { return a.on_a < b.on_a; });
+    return anchors;
+  }
+
+  bool ComparePairs() {
+    costs_ = Eigen::MatrixXd::Zero(n_, n_);
+    // Marks say which way round a drawing is: without any, each may be the wrong way.
+    if (marks_.on.empty()) mirrored_costs_ = Eigen::MatrixXd::Zero(n_, n_);
+    pairs_.resize(static_cast<std::size_t>(n_) * n_);
+    int done = 0;
+    for (int i = 0; i < n_; ++i) {
+      const OutlineCurve mirrored = curves_[i].Mirrored();
+      for (int j = i + 1; j < n_; ++j, ++done) {
+        if (IsCancelled(progress_)) return false;
+        Report(progress_, kCoarseShare * 2.0 * done / (n_ * (n_ - 1.0)));
+        const std::vector<Anchor> anchors = MarkedAnchors(i, j);
+        PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
+        CoarseMatch match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
+        if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours() &&
+            MeanColourDifference(curves_[i], curves_[j], match.map) <
+                options_.max_colour_difference) {
+          weights.colour = options_.colour_weight;
+          match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
+        }
+        costs_(i, j) = costs_(j, i) = match.cost;
+        if (marks_.on.empty()) {
+          mirrored_costs_(i, j) = mirrored_costs_(j, i) =
+              MatchCoarsely(mirrored, curves_[j], {}, weights).cost;
+        }
+        std::vector<double> back_starts;
+        for (const double start : match.starts) back_starts.push_back(-start);
+        pairs_[j * n_ + i] = {weights, match.map.Inverse(), std::move(back_starts)};
+        pairs_[i * n_ + j] = {weights, std::move(match.map), std::move(match.starts)};
+      }
+    }
+    tree_ = SpanningTree(costs_);
+    return true;
+  }
+
+  OutlineMap Match(int a, int b, const std::vector<Anchor>& anchors) const {
+    return MatchFinely(curves_[a], curves_[b], anchors, Pair(a, b).starts, Pair(a, b).weights).map;
+  }
+
+  bool FillLandmarks() {
+    const auto num_landmarks = marks_.on.size();
+    if (num_landmarks == 0) return true;
+    // Where the marks leave the order open, it is that on the root as the coarse matches see it.
+    std::vector<double> preferred(num_landmarks);
+    for (std::size_t l = 0; l < num_landmarks; ++l) {
+      for (auto i = tree_.order.rbegin(); i != tree_.order.rend(); ++i) {
+        if (!marks_.on[l][*i]) continue;
+        const double position = marks_.on[l][*i]->position;
+        preferred[l] = *i == tree_.root ? position : Pair(*i, tree_.root).map.At(position);
+      }
+    }
+    auto order = FindCommonOrder(marks_, preferred);
+    if (!order) order = FindCommonOrder(marks_, std::vector<double>(num_landmarks, 0.0));
+    order_ = std::move(*order);
+
+    bool cancelled = false;
+    positions_ = CompleteLandmarks(marks_, order_, tree_,
+                                   [&](int a, int b, const std::vector<Anchor>& anchors) {
+                                     cancelled = cancelled || IsCancelled(progress_);
+                                     return cancelled ? OutlineMap() : Match(a, b, anchors);
+                                   });
+    return !cancelled;
+  }
+
+  bool MatchAlongTree() {
+    maps_.resize(n_);
+    int done = 0;
+    for (const int i : tree_.order) {
+      if (IsCancelled(progress_)) return false;
+      Report(progress_, kCoarseShare + (1.0 - kCoarseShare) * done++ / n_);
+      const int parent = tree_.parent[i];
+      if (parent < 0) continue;
+      maps_[i] = maps_[parent].Then(Match(parent, i, CommonAnchors(order_, positions_, parent, i)));
+    }
+    return true;
+  }
+
+  const std::vector<OutlineCurve> curves_;
+  const Marks marks_;
+  const MatchingOptions& options_;
+  Progress* const progress_;
+  const int n_;
+
+  std::vector<ComparedPair> pairs_;  // n x n, row i to column j
+  Eigen::MatrixXd costs_;
+  Eigen::MatrixXd mirrored_costs_;
+  MatchingTree tree_;
+  std::vector<int> order_;  // of the landmarks around every outline
+  LandmarkPositions positions_;
+  std::vector<OutlineMap> maps_;  // from the root's outline to each
+};
+
+// The drawings sorted by what they are, so that the caller's order decides nothing.
+std::vector<int> CanonicalOrder(std::span<const MatchingShape> shapes, const Marks& marks) {
+  std::vector<std::vector<double>> keys;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const auto& [name, outline, colours] = shapes[i];
+    std::vector<double>& key = keys.emplace_back(outline.data(), outline.data() + outline.size());
+    key.insert(key.end(), colours.data(), colours.data() + colours.size());
+    for (const auto& on : marks.on) key.push_back(on[i] ? on[i]->position : -1.0);
+  }
+  std::vector<int> order(shapes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+  return order;
+}
+
+// Entry k of the result is entry order[k] of `values`.
+template <typename T>
+std::vector<T> Reordered(const std::vector<T>& values, const std::vector<int>& order) {
+  std::vector<T> result;
+  for (const int k : order) result.push_back(values[k]);
+  return result;
+}
+
+}  // namespace
+
+Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
+                            std::span<const Landmark> landmarks, const MatchingOptions& options) {
+  auto marks = PlaceLandmarks(shapes, CurvesOf(shapes), landmarks, options);
+  if (!marks) return std::move(marks).error();
+  return {};
+}
+
+Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
+                                        std::span<const Landmark> landmarks,
+                                        const MatchingOptions& options, Progress* progress) {
+  const std::vector<OutlineCurve> curves = CurvesOf(shapes);
+  Marks marks = TRY(PlaceLandmarks(shapes, curves, landmarks, options));
+  const std::vector<int> order = CanonicalOrder(shapes, marks);
+  for (auto& on : marks.on) on = Reordered(on, order);
+  const std::vector<int> of_tuple = marks.of_tuple;
+
+  GroupMatching matching(Reordered(curves, order), std::move(marks), options, progress);
+  if (!matching.Run()) return Error{ErrorCode::kCancelled, "matching was cancelled", {}};
+
+  CommonRows rows = matching.Rows();
+  const std::vector<double> confidence = matching.Confidence();
+  MatchedOutlines result;
+  result.outlines.resize(shapes.size());
+  result.confidence.resize(shapes.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const MatchingShape& shape = shapes[order[k]];
+    if (const auto crossing = FindCrossing(rows.outlines[k])) {
+      return Error{
+          ErrorCode::kOutlineNotSimple,
+          "shape '" + shape.name + "': its outline passes itself closer than numbers can tell",
+          {{"shapes['" + shape.name + "'].outline", "touches itself"}}};
+    }
+    result.outlines[order[k]] = std::move(rows.outlines[k]);
+    result.confidence[order[k]] = confidence[k];
+  }
+  for (const int landmark : of_tuple) {
+    result.landmark_rows.push_back(rows.landmark_rows[landmark]);
+  }
+  return result;
+}
+
+}  // namespace posespace

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/matching_confidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace posespace {
+namespace {
+
+// A score of 1 in each kind of evidence, and the score from which a person should look: first
+// choices from fifty groups of real drawings.
+constexpr double kDoubtfulCost = 0.06;
+constexpr double kDoubtfulCycle = 0.05;
+constexpr double kDoubtfulGain = 0.06;
+constexpr double kDoubtfulScore = 1.2;
+
+double FlippedCost(const Eigen::MatrixXd& costs, const Eigen::MatrixXd& mirrored_costs,
+                   const std::vector<bool>& flips) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < costs.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      sum += flips[i] == flips[j] ? costs(i, j) : mirrored_costs(i, j);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<bool> CheapestFlips(const Eigen::MatrixXd& costs,
+                                const Eigen::MatrixXd& mirrored_costs) {
+  const int n = static_cast<int>(costs.rows());
+  std::vector<bool> best(n, false);
+  double least = FlippedCost(costs, mirrored_costs, best);
+  // From each drawing flipped alone, and from none: flip whatever helps most until nothing helps.
+  for (int first = -1; first < n; ++first) {
+    std::vector<bool> flips(n, false);
+    if (first >= 0) flips[first] = true;
+    for (bool improved = true; improved;) {
+      improved = false;
+      int flip = -1;
+      double gain = 0.0;
+      for (int i = 0; i < n; ++i) {
+        double change = 0.0;
+        for (int j = 0; j < n; ++j) {
+          if (j == i) continue;
+          const double difference = mirrored_costs(i, j) - costs(i, j);
+          change += flips[i] == flips[j] ? difference : -difference;
+        }
+        if (change < gain - 1e-12) {
+          gain = change;
+          flip = i;
+        }
+      }
+      if (flip >= 0) {
+        flips[flip] = !flips[flip];
+        improved = true;
+      }
+    }
+    const double cost = FlippedCost(costs, mirrored_costs, flips);
+    if (cost < least) {
+      least = cost;
+      best = flips;
+    }
+  }
+  const auto flipped = std::count(best.begin(), best.end(), true);
+  if (2 * flipped > n || (2 * flipped == n && best[0])) best.flip();
+  return best;
+}
+
+std::vector<double> ConfidenceOf(const MatchingEvidence& evidence) {
+  const auto n = evidence.costs.rows();
+  if (n < 2) return std::vector<double>(n, 1.0);
+
+  std::vector<double> scores(n, 0.0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double others = static_cast<double>(n - 1);
+    scores[i] = std::max(evidence.costs.row(i).sum() / others / kDoubtfulCost,
+                         evidence.cycle_errors.row(i).sum() / others / kDoubtfulCycle);
+  }
+  if (evidence.mirrored_costs.size() > 0) {
+    const std::vector<bool> flips = CheapestFlips(evidence.costs, evidence.mirrored_costs);
+    const double least = FlippedCost(evidence.costs, evidence.mirrored_costs, flips);
+    const double gain = 0.5 * evidence.costs.sum() / least;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (flips[i]) scores[i] = std::max(scores[i], (gain - 1.0) / kDoubtfulGain);
+    }
+  }
+  std::vector<double> confidence;
+  for (const double score : scores) {
+    confidence.push_back(1.0 / (1.0 + std::pow(score / kDoubtfulScore, 2)));
+  }
+  return confidence;
+}
+
+}  // namespace posespace

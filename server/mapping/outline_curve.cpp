@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/outline_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geometry/polygon.h"
+
+namespace posespace {
+namespace {
+
+constexpr std::array kWindows = {1.0 / 64, 1.0 / 32, 1.0 / 16, 1.0 / 8};  // turns
+constexpr double kCornerReach = 1e-6;  // turns within which a nearest point is the corner itself
+
+}  // namespace
+
+OutlineCurve::OutlineCurve(const Points& outline, const Eigen::MatrixXd& colours)
+    : outline_(outline),
+      colours_(colours.rows() == outline.rows() ? colours : Eigen::MatrixXd()),
+      perimeter_(Perimeter(outline)),
+      size_(std::sqrt(SignedArea(outline))),
+      centroid_(AreaCentroid(outline)) {
+  positions_.reserve(outline.rows());
+  double length = 0.0;
+  for (Eigen::Index k = 0; k < outline.rows(); ++k) {
+    positions_.push_back(length / perimeter_);
+    length += (outline.row((k + 1) % outline.rows()) - outline.row(k)).norm();
+  }
+}
+
+OutlineCurve::Place OutlineCurve::Find(double position) const {
+  position -= std::floor(position);
+  const auto after = std::upper_bound(positions_.begin(), positions_.end(), position);
+  const int edge = static_cast<int>(after - positions_.begin()) - 1;
+  const double begin = positions_[edge], end = after == positions_.end() ? 1.0 : *after;
+  return {edge, std::clamp((position - begin) / (end - begin), 0.0, 1.0)};
+}
+
+Point OutlineCurve::At(double position) const {
+  const auto [edge, fraction] = Find(position);
+  const int next = (edge + 1) % num_corners();
+  return corner(edge) + fraction * (corner(next) - corner(edge));
+}
+
+OutlineCurve::Nearest OutlineCurve::NearestTo(const Point& p) const {
+  double least = std::numeric_limits<double>::infinity();
+  Place place{0, 0.0};
+  for (int edge = 0; edge < num_corners(); ++edge) {
+    const Point a = corner(edge), along = corner((edge + 1) % num_corners()) - a;
+    const double fraction = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const double distance = (p - a - fraction * along).norm();
+    if (distance < least) {
+      least = distance;
+      place = {edge, fraction};
+    }
+  }
+  const int next = (place.edge + 1) % num_corners();
+  const double begin = positions_[place.edge], end = next == 0 ? 1.0 : positions_[next];
+  const double position = begin + place.fraction * (end - begin);
+  if (position - begin < kCornerReach) return {begin, corner(place.edge), least};
+  if (end - position < kCornerReach) return {positions_[next], corner(next), least};
+  return {position, corner(place.edge) + place.fraction * (corner(next) - corner(place.edge)),
+          least};
+}
+
+Eigen::MatrixXd OutlineCurve::Features(const std::vector<double>& positions,
+                                       double position_weight) const {
+  Eigen::MatrixXd features(positions.size(), 2 * kWindows.size() + 2);
+  const double share = 1.0 / std::sqrt(2.0 * kWindows.size());
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const Point here = At(positions[k]);
+    for (std::size_t w = 0; w < kWindows.size(); ++w) {
+      const Point before = At(positions[k] - kWindows[w]), after = At(positions[k] + kWindows[w]);
+      const Point a = here - before, b = after - here;
+      const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) / std::numbers::pi;
+      const double chord = (after - before).norm() / (2.0 * kWindows[w] * perimeter_) - 1.0;
+      features(k, 2 * w) = share * turn;
+      features(k, 2 * w + 1) = share * chord;
+    }
+    features.row(k).tail<2>() = std::sqrt(position_weight) * (here - centroid_) / size_;
+  }
+  return features;
+}
+
+Eigen::MatrixXd OutlineCurve::Colours(const std::vector<double>& positions) const {
+  Eigen::MatrixXd colours(positions.size(), 3);
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const auto [edge, fraction] = Find(positions[k]);
+    const int next = (edge + 1) % num_corners();
+    colours.row(k) = (1.0 - fraction) * colours_.row(edge) + fraction * colours_.row(next);
+  }
+  return colours;
+}
+
+OutlineCurve OutlineCurve::Mirrored() const {
+  Points outline = outline_.colwise().reverse();
+  outline.col(0) *= -1.0;
+  return {outline, colours_.colwise().reverse()};
+}
+
+}  // namespace posespace

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_MAPPING_OUTLINE_CURVE_H_
+#define POSESPACE_MAPPING_OUTLINE_CURVE_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace posespace {
+
+// A closed outline by arc length: position 0 is its first corner, position 1 the same after one
+// turn.  Positions may be any number of turns away.  Immutable; share freely.
+class OutlineCurve {
+ public:
+  // `colours` as in MatchingShape.
+  OutlineCurve(const Points& outline, const Eigen::MatrixXd& colours);
+
+  int num_corners() const { return static_cast<int>(outline_.rows()); }
+  Point corner(int k) const { return outline_.row(k).transpose(); }
+  double corner_position(int k) const { return positions_[k]; }  // in [0, 1), increasing
+
+  double perimeter() const { return perimeter_; }  // drawing pixels
+  double size() const { return size_; }            // square root of the area, drawing pixels
+  bool has_colours() const { return colours_.rows() > 0; }
+
+  Point At(double position) const;
+
+  // The outline's point nearest to p; a corner when it is one, or within 1e-6 turns of one.
+  struct Nearest {
+    double position;
+    Point point;
+    double distance;  // drawing pixels
+  };
+  Nearest NearestTo(const Point& p) const;
+
+  // What the outline looks like at each position, one row each, made so that squared distances
+  // between rows of two outlines say how unlike the places are: columns 0-7 the turn and the chord
+  // over windows of 1/64 to 1/8 turn either side (the same at every scale, place and rotation),
+  // columns 8-9 the place relative to the centroid in drawing sizes, times sqrt(position_weight).
+  Eigen::MatrixXd Features(const std::vector<double>& positions, double position_weight) const;
+
+  // The colour inside the outline at each position, one row each, RGB.
+  Eigen::MatrixXd Colours(const std::vector<double>& positions) const;
+
+  // The curve of the drawing seen in a mirror, positively oriented again.
+  OutlineCurve Mirrored() const;
+
+ private:
+  // The edge that `position` lies on and how far along it, in [0, 1].
+  struct Place {
+    int edge;
+    double fraction;
+  };
+  Place Find(double position) const;
+
+  Points outline_;
+  Eigen::MatrixXd colours_;
+  std::vector<double> positions_;
+  double perimeter_;
+  double size_;
+  Point centroid_;
+};
+
+}  // namespace posespace
+
+#endif  // POSESPACE_MAPPING_OUTLINE_CURVE_H_

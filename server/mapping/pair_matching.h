@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef POSESPACE_MAPPING_PAIR_MATCHING_H_
+#define POSESPACE_MAPPING_PAIR_MATCHING_H_
+
+#include <vector>
+
+#include "mapping/outline_curve.h"
+#include "mapping/outline_map.h"
+
+namespace posespace {
+
+// What makes two places of two outlines unlike, as in MatchingOptions; a colour weight of 0 leaves
+// colours out.
+struct PairWeights {
+  double position;
+  double colour;
+  double stretch;
+};
+
+// A position on each of two outlines that are the same place.
+struct Anchor {
+  double on_a;
+  double on_b;
+};
+
+struct CoarseMatch {
+  double cost;
+  OutlineMap map;
+  std::vector<double>
+      starts;  // without anchors: the places on b where a may begin, likeliest first
+};
+
+struct FineMatch {
+  double cost;
+  OutlineMap map;
+};
+
+// A quick match of a to b from 64 samples, over all places of b where a may begin unless anchors
+// (in their common cyclic order, distinct) say so.
+CoarseMatch MatchCoarsely(const OutlineCurve& a, const OutlineCurve& b,
+                          const std::vector<Anchor>& anchors, const PairWeights& weights);
+
+// A match from 256 samples refined to 1024, through the anchors or, when there are none, from the
+// best of the given starts.  The cut is moved to the most salient pair of places and the match
+// repeated, so that no start is met exactly only because it was a sample.
+FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
+                      const std::vector<Anchor>& anchors, const std::vector<double>& starts,
+                      const PairWeights& weights);
+
+// The mean colour difference along the map, RGB in [0, 1].
+double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map);
+
+}  // namespace posespace
+
+#endif  // POSESPACE_MAPPING_PAIR_MATCHING_H_
