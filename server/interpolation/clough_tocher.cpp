@@ -18,9 +18,7 @@ struct Backwards {
   }
 
   // weight * the ordinate a third of the way from corner i to `to`.
-  void Third(int i, const Point& to, double weight) {
-    Tangent(i, (to - corner[i]) / 3.0, weight);
-  }
+  void Third(int i, const Point& to, double weight) { Tangent(i, (to - corner[i]) / 3.0, weight); }
 
   // weight * the middle ordinate of the part beside edge ij.  With theta the place of the
   // centroid's foot on the edge, linearity of the normal derivative gives

@@ -76,11 +76,11 @@ Builder::Builder(const Point& size, double spacing) {
   std::vector<int> row_begin;
   for (int row = 0; row <= rows; ++row) {
     row_begin.push_back(static_cast<int>(vertices_.size()));
-    const double y = size.y() * row / rows;
+    const double y = row == rows ? size.y() : size.y() * row / rows;
     const bool is_odd = row % 2 == 1;
     for (int k = 0; k <= columns + is_odd; ++k) {
       const double place = is_odd ? std::clamp(k - 0.5, 0.0, double(columns)) : k;
-      vertices_.emplace_back(size.x() * place / columns, y);
+      vertices_.emplace_back(place == columns ? size.x() : size.x() * place / columns, y);
     }
   }
   for (int row = 0; row < rows; ++row) {
@@ -100,7 +100,8 @@ Builder::Builder(const Point& size, double spacing) {
 }
 
 int Builder::Split(int a, int b) {
-  const auto [entry, is_new] = midpoints_.try_emplace(Key(a, b), static_cast<int>(vertices_.size()));
+  const auto [entry, is_new] =
+      midpoints_.try_emplace(Key(a, b), static_cast<int>(vertices_.size()));
   if (is_new) vertices_.push_back(0.5 * (vertices_[a] + vertices_[b]));
   return entry->second;
 }

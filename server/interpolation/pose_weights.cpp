@@ -19,6 +19,7 @@ namespace {
 // All relative to the diameter of the placements.
 constexpr double kSpacing = 1.0 / 48.0;
 constexpr double kMargin = 0.5;
+constexpr double kEasedWidth = 0.2;  // of the band along the rim, see Eased()
 constexpr double kCoincident = 1e-3;
 
 // Outside these limits the gradient term vanishes in, or swamps, double precision.
@@ -68,7 +69,8 @@ SparseFactor::Matrix EnergyOf(const PoseLattice& lattice, double levelling) {
     std::array<double, 4> jump{};
     for (int side = 0; side < 2; ++side) {
       const int t = edge[2 + side];
-      const Eigen::RowVector3d slopes = (side == 0 ? 1.0 : -1.0) * normal * HatGradients(lattice, t);
+      const Eigen::RowVector3d slopes =
+          (side == 0 ? 1.0 : -1.0) * normal * HatGradients(lattice, t);
       for (int k = 0; k < 3; ++k) {
         const int v = lattice.triangles(t, k);
         const int slot = v == vertex[0] ? 0 : v == vertex[1] ? 1 : 2 + side;
@@ -88,8 +90,7 @@ SparseFactor::Matrix EnergyOf(const PoseLattice& lattice, double levelling) {
   const double eps = 1.5 / (levelling * levelling);
   for (Eigen::Index t = 0; t < lattice.triangles.rows(); ++t) {
     const auto gradients = HatGradients(lattice, t);
-    const Eigen::Matrix3d stiffness =
-        eps * AreaOf(lattice, t) * gradients.transpose() * gradients;
+    const Eigen::Matrix3d stiffness = eps * AreaOf(lattice, t) * gradients.transpose() * gradients;
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) {
         entries.emplace_back(lattice.triangles(t, j), lattice.triangles(t, k), stiffness(j, k));
@@ -151,10 +152,8 @@ Result<Rows> LeastEnergyWeights(const SparseFactor::Matrix& energy,
   return weights;
 }
 
-// Values and gradients, 3 V x N: row 3 v + k is the value, x and y slope at vertex v.
-//
-// A vertex's gradient is the area-weighted mean of its triangles'.  On the rim only its part along
-// the rim counts, at a corner none: outside, weights are constant along the rim's normals.
+// Values and gradients, 3 V x N: row 3 v + k is the value, x and y slope at vertex v.  A vertex's
+// gradient is the area-weighted mean of its triangles'.
 Rows WithGradients(const PoseLattice& lattice, const Rows& weights) {
   Rows data = Rows::Zero(3 * weights.rows(), weights.cols());
   Eigen::VectorXd area = Eigen::VectorXd::Zero(weights.rows());
@@ -169,12 +168,8 @@ Rows WithGradients(const PoseLattice& lattice, const Rows& weights) {
     }
   }
   for (Eigen::Index v = 0; v < weights.rows(); ++v) {
-    const Point at = lattice.vertices.row(v).transpose();
-    const bool on_x_rim = at.x() == 0.0 || at.x() == lattice.size.x();
-    const bool on_y_rim = at.y() == 0.0 || at.y() == lattice.size.y();
     data.row(3 * v) = weights.row(v);
-    data.row(3 * v + 1) *= on_x_rim ? 0.0 : 1.0 / area[v];
-    data.row(3 * v + 2) *= on_y_rim ? 0.0 : 1.0 / area[v];
+    data.middleRows(3 * v + 1, 2) /= area[v];
   }
   return data;
 }
@@ -241,6 +236,19 @@ struct Chart {
   }
 };
 
+// A coordinate of the domain [0, size], brought to where the weights are read: unchanged inside,
+// slowed down to a halt through a band along the rim, constant outside.  C1, so that weights are C1
+// across the rim and at its corners, and their slopes fade over the band's width.
+double Eased(double x, double size) {
+  const auto past = [](double depth) {  // by how much to step back, `depth` into the band
+    return depth * depth / (2.0 * kEasedWidth);
+  };
+  x = std::clamp(x, 0.0, size);
+  if (x < kEasedWidth) return x + past(kEasedWidth - x);
+  if (x > size - kEasedWidth) return x - past(x - (size - kEasedWidth));
+  return x;
+}
+
 }  // namespace
 
 struct PoseWeights::Field {
@@ -297,11 +305,13 @@ Result<PoseWeights> PoseWeights::Fit(const Points& placements, const PoseWeights
 Eigen::VectorXd PoseWeights::At(const Point& point) const {
   if (!field_->surface) return Eigen::VectorXd::Ones(1);
   const auto& [chart, lattice, locator, data] = *field_->surface;
-  const Point place = chart.ToDomain(point).cwiseMax(0.0).cwiseMin(lattice.size);
-  const auto [t, barycentric] = locator.Find(place);
+  const Point place = chart.ToDomain(point);
+  const auto [t, barycentric] =
+      locator.Find(Point(Eased(place.x(), lattice.size.x()), Eased(place.y(), lattice.size.y())));
 
   std::array<Point, 3> corners;
-  for (int k = 0; k < 3; ++k) corners[k] = lattice.vertices.row(lattice.triangles(t, k)).transpose();
+  for (int k = 0; k < 3; ++k)
+    corners[k] = lattice.vertices.row(lattice.triangles(t, k)).transpose();
   const CornerShares shares = CloughTocher(corners, barycentric);
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(field_->num_poses);
   for (int k = 0; k < 3; ++k) {

@@ -15,17 +15,17 @@ struct PoseWeightsOptions {
   double levelling = 0.4;
 };
 
-// The weight of every pose at every point of the 2D pose space: N smooth functions that are exact at
-// the placements and sum to one everywhere.
+// The weight of every pose at every point of the 2D pose space: N smooth functions that are exact
+// at the placements and sum to one everywhere.
 //
 // Weights over poses, not over mesh vertices; the mesh solve is rigid_blend.h.
 //
 // The plane is tessellated with a near-equilateral lattice (pose_lattice.h) over the placements'
-// bounding box and a margin of half their diameter; the weights minimise the jumps of their gradient
-// over the lattice's edges (a discrete biharmonic energy) and, slightly, the gradient itself.
-// Between lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1 everywhere:
-// also across the domain's rim, outside of which each point takes the weights of the closest point
-// of the rim, and at its corners.
+// bounding box and a margin of half their diameter; the weights minimise the jumps of their
+// gradient over the lattice's edges (a discrete biharmonic energy) and, slightly, the gradient
+// itself. Between lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1
+// everywhere: also across the domain's rim, outside of which each point takes the weights of the
+// closest point of the rim, and at its corners.
 //
 // Weights may be negative and exceed 1 (extrapolation): see shear_limit.h.
 //
@@ -41,7 +41,8 @@ class PoseWeights {
   // Fails     kNoShapes (N = 0), kPlacementNotFinite (also when distances overflow),
   //           kPlacementsCoincide (names both rows; closer than 1e-3 of the diameter),
   //           kInvalidOption (levelling outside [0.01, 100]), kCancelled.
-  // Cost      one sparse factorisation of some 11,000 unknowns at most, and up to some 1,000 more per
+  // Cost      one sparse factorisation of some 11,000 unknowns at most, and up to some 1,000 more
+  // per
   //           pose that is close to another: well under a second.
   static Result<PoseWeights> Fit(const Points& placements, const PoseWeightsOptions& options = {},
                                  Progress* progress = nullptr);

@@ -68,10 +68,9 @@ double WrapRotations(const std::vector<int>& part_of, int pose, int turns, Trian
     area[part_of[t]] += rigid->areas[t];
   }
   constexpr double kRounding = 1e-9;
-  const Eigen::VectorXd excess =
-      (sum.cwiseQuotient(area) / kTurn).unaryExpr([](double mean_turns) {
-        return std::ceil(mean_turns - 0.5 - kRounding);
-      });
+  const Eigen::VectorXd excess = (sum.cwiseQuotient(area) / kTurn).unaryExpr([](double mean_turns) {
+    return std::ceil(mean_turns - 0.5 - kRounding);
+  });
   for (std::size_t t = 0; t < part_of.size(); ++t) {
     const double shift = kTurn * (turns - excess[part_of[t]]);
     rigid->rotations(t, pose) += shift;
@@ -84,8 +83,7 @@ double WrapRotations(const std::vector<int>& part_of, int pose, int turns, Trian
 void AssembleTargets(const Eigen::ArrayXd& cosines, const Eigen::ArrayXd& sines,
                      const Eigen::ArrayXd& stretch, Eigen::MatrixXd* targets) {
   const Eigen::Index count = cosines.size();
-  const auto xx = stretch.head(count), xy = stretch.segment(count, count),
-             yy = stretch.tail(count);
+  const auto xx = stretch.head(count), xy = stretch.segment(count, count), yy = stretch.tail(count);
   targets->resize(count, 4);
   targets->col(0).array() = cosines * xx - sines * xy;
   targets->col(1).array() = cosines * xy - sines * yy;
@@ -172,15 +170,15 @@ Result<RigidBlend> RigidBlend::Prepare(const CompatibleMesh& mesh, std::vector<i
   const Eigen::VectorXd equal = Eigen::VectorXd::Ones(mesh.num_triangles());
   auto rigid_fit = TRY(GradientFit::Prepare(mesh.triangles, parts, rigid.gradients, rigid.areas));
   auto paper_fit = TRY(GradientFit::Prepare(mesh.triangles, parts, paper.gradients, equal));
-  return RigidBlend(std::make_shared<const Prepared>(Prepared{
-      mesh.triangles,
-      std::move(parts),
-      mesh.poses,
-      std::move(centroids),
-      {std::move(rigid.rotations), std::move(rigid.stretches), std::move(rigid_fit)},
-      {std::move(paper.rotations), std::move(paper.stretches), std::move(paper_fit)},
-      std::move(mean_rotations),
-      std::move(turns)}));
+  return RigidBlend(std::make_shared<const Prepared>(
+      Prepared{mesh.triangles,
+               std::move(parts),
+               mesh.poses,
+               std::move(centroids),
+               {std::move(rigid.rotations), std::move(rigid.stretches), std::move(rigid_fit)},
+               {std::move(paper.rotations), std::move(paper.stretches), std::move(paper_fit)},
+               std::move(mean_rotations),
+               std::move(turns)}));
 }
 
 Points RigidBlend::At(const Eigen::VectorXd& weights, const BlendOptions& options) const {

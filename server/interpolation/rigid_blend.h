@@ -44,9 +44,9 @@ struct BlendOptions {
 // Parts         of a mesh that share no edge are unwrapped, those that share no vertex placed, each
 //               by itself.
 //
-// Guarantees: weights of one pose alone reproduce it; the result is unmoved by a common rigid motion
-// of all poses (it moves along).  It is unmoved by their order as long as all their mean rotations
-// lie within half a turn; wider spread is ambiguous, and the turns decide.
+// Guarantees: weights of one pose alone reproduce it; the result is unmoved by a common rigid
+// motion of all poses (it moves along).  It is unmoved by their order as long as all their mean
+// rotations lie within half a turn; wider spread is ambiguous, and the turns decide.
 //
 // Immutable; share freely.  At() takes no lock.
 // Follows   Baxter, Barla, Anjyo 2009, section 4.2.
@@ -57,7 +57,8 @@ class RigidBlend {
   // (-pi, pi] (half a turn, but for rounding, is +pi), then 2 pi turns[i] is added.
   //
   // Requires  a valid mesh.
-  // Fails     kSizeMismatch (turns), kInternal (empty, a vertex without triangle, or a triangle that
+  // Fails     kSizeMismatch (turns), kInternal (empty, a vertex without triangle, or a triangle
+  // that
   //           is degenerate in every pose).
   static Result<RigidBlend> Prepare(const CompatibleMesh& mesh, std::vector<int> turns = {});
 

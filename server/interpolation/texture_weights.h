@@ -28,9 +28,8 @@ inline Eigen::VectorXd TextureWeights(const Eigen::VectorXd& limited, double sig
     const double x = std::clamp((t - 0.5 * sigma) / (1.0 - sigma), 0.0, 1.0);
     return x * x * (3.0 - 2.0 * x);
   };
-  Eigen::VectorXd sharp = limited.unaryExpr([&](double w) {
-    return sigma * step(w / (largest + second)) + (1.0 - sigma) * w;
-  });
+  Eigen::VectorXd sharp = limited.unaryExpr(
+      [&](double w) { return sigma * step(w / (largest + second)) + (1.0 - sigma) * w; });
   return sharp / sharp.sum();
 }
 
