@@ -146,7 +146,8 @@ Result<Image> DecodeImage(std::span<const std::uint8_t> bytes, const DecodeLimit
 }
 
 std::vector<std::uint8_t> EncodePng(const Image& image) {
-  if (image.width <= 0 || image.height <= 0) return {};
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  if (image.width <= 0 || image.height <= 0 || image.rgba.size() != 4 * pixels) return {};
   png_image png{};  // libpng's simplified writer: reports by value, never by longjmp to us
   png.version = PNG_IMAGE_VERSION;
   png.width = image.width;

@@ -14,7 +14,7 @@ namespace posespace {
 
 struct OutlineOptions {
   int threshold = 128;      // alpha >= threshold is painted, 1 .. 255; applied before scaling
-  int working_size = 512;   // the longer side, working pixels, at which outlines are traced
+  int working_size = 512;   // the painted part's longer side, working pixels, 64 .. 4096
   int max_points = 20'000;  // of one ring
 };
 
@@ -32,19 +32,21 @@ struct Outline {
 // The ring encloses the centre of every painted pixel: it is traced at working size after painting
 // has been widened by 2 working pixels.  Detached parts of at least 0.4 % of the painted area are
 // joined to the rest by a thin bridge, smaller ones dropped; holes are filled.  Each of these is
-// said in `warnings`.
+// said in `warnings`.  No edge is longer than 1/32 of the working size, so that colours may be
+// interpolated between rows.  Moving the drawing within its picture moves the outline with it.
 //
-// Fails     kOutlineEmpty (no pixel reaches the threshold), kOutlineTooSmall (names the painted
-//           size and the limit), kOutlineTooLong, kInvalidOption (threshold).
+// Fails     kOutlineEmpty (no pixel reaches the threshold), kOutlineTooSmall (fewer than 16 painted
+//           pixels in one piece), kOutlineTooLong, kInvalidOption (threshold, working_size).
 // Cost      a few milliseconds per 512 x 512 working pixels, plus one pass over the picture.
 Result<Outline> TraceOutline(const Image& image, const OutlineOptions& options = {});
 
 // The outline given as rings: checked, oriented, repeated and needless points removed.
-// Holes are checked, kept in `holes` and counted in holes_filled.
+// Holes are checked (simple, inside the outline, apart from each other), kept in `holes` and
+// counted in holes_filled.  Errors name points and edges by the rows that were given.
 //
-// Fails     kOutlineTooSmall (fewer than 3 distinct points, or no area), kOutlineNotSimple (names
-//           both edges and where they meet), kOutlineTooLong, kInvalidOption (not finite, or a
-//           coordinate beyond 1e6).
+// Fails     kOutlineTooSmall (fewer than 3 distinct points, or an area below 1e-6),
+//           kOutlineNotSimple (names both edges and where they meet), kOutlineTooLong (the outline,
+//           or all holes together), kInvalidOption (not finite, or a coordinate beyond 1e6).
 Result<Outline> OutlineFromRings(const Points& outer, std::span<const Points> holes,
                                  const OutlineOptions& options = {});
 

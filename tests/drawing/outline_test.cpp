@@ -128,10 +128,10 @@ TEST(TraceOutline, IsSimpleForNoise) {
 
 TEST(TraceOutline, IsSimpleForCombsWhoseTeethNearlyTouch) {
   for (const int gap : {1, 2, 3, 4, 5, 6, 7}) {
-    Image image = PictureOf(512, 512);
+    Image image = PictureOf(512, 120);
     PaintBox(&image, 0, 0, 512, 20, kBlack);
     for (int x = 0; x < 512; x += 9 + gap) {
-      for (int y = 20; y < 512; ++y) PaintBox(&image, x + y / 60, y, 9, 1, kBlack);
+      for (int y = 20; y < 120; ++y) PaintBox(&image, x + y / 15, y, 9, 1, kBlack);
     }
     const auto outline = TraceOutline(image);
     ASSERT_TRUE(outline) << outline.error().message;

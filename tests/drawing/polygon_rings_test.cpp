@@ -171,7 +171,8 @@ TEST(PaintRings, TakesThinAndFarRings) {
     ASSERT_TRUE(outline) << outline.error().message;
     const Texture texture = PaintRings(*outline, 128);
     EXPECT_LE(std::max(texture.image.width, texture.image.height), 128 + 5);
-    EXPECT_GT(PaintedArea(texture), 0.0 * texture.scale - 1e-9);
+    const double texel_area = 1.0 / (texture.scale * texture.scale);
+    EXPECT_NEAR(PaintedArea(texture), SignedArea(outline->outer), texel_area) << ring;
   }
 }
 

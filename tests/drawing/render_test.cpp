@@ -287,11 +287,18 @@ TEST(RenderTexture, IsBilinearBetweenTexelCentresAndTransparentOutside) {
 TEST(FitView, CentresTheBoxAndKeepsItsAspect) {
   const View view = FitView({10, 20}, {30, 60}, 100, 100);
   EXPECT_DOUBLE_EQ(view.scale, 2.5);
-  const auto pixel = [&](const Point& p) -> Point { return (p - view.origin) * view.scale; };
-  EXPECT_TRUE(pixel({20, 40}).isApprox(Point(50, 50)));
-  EXPECT_TRUE(pixel({10, 20}).isApprox(Point(25, 0)) || pixel({10, 20}).y() < 1e-9);
-  EXPECT_TRUE(pixel({30, 60}).isApprox(Point(75, 100)));
-  EXPECT_DOUBLE_EQ(FitView({5, 5}, {5, 5}, 10, 10).scale, 1.0);
+  const auto distance = [&](const Point& p, const Point& pixel) {
+    return ((p - view.origin) * view.scale - pixel).norm();
+  };
+  EXPECT_LT(distance({20, 40}, {50, 50}), 1e-12);
+  EXPECT_LT(distance({10, 20}, {25, 0}), 1e-12);
+  EXPECT_LT(distance({30, 60}, {75, 100}), 1e-12);
+}
+
+TEST(FitView, ShowsABoxWithoutSizeAtScaleOne) {
+  const View view = FitView({5, 7}, {5, 7}, 10, 20);
+  EXPECT_DOUBLE_EQ(view.scale, 1.0);
+  EXPECT_EQ(view.origin, Point(0, -3));
 }
 
 }  // namespace
