@@ -257,21 +257,18 @@ def _head(picture: Drawing, head: Frame, smile: float) -> None:
     above = [(27, 52), (0, 55), (-27, 52)]
     picture.mark(outline([head.all(chin), head.all(above)]), mix(SKIN, BLUSH, 0.45))
     picture.shade(
-        outline([head.all([(-69, -6), (69, -6)]), head.all([(66, -34), (-66, -34)])]), 0.1
+        outline([head.all([(-68, -3), (0, -9), (68, -3)]), head.all([(66, -34), (-66, -34)])]), 0.1
     )
-    fringe = [(-68, -34), (-71, -8), (-61, 4), (-54, -12), (-40, -9), (-30, -19), (-12, -11),
-              (2, -21), (22, -11), (34, -20), (52, -11), (61, 4), (71, -8), (68, -34)]  # fmt: skip
-    picture.mark(closed(head.all([*fringe, (0, -50)])), HAIR)
-    for x, y in ((-52, -16), (-26, -20), (-8, -17), (26, -17), (50, -17)):
-        strand = head.all([(x, y - 8), (x - 1.5, y), (x - 4, y + 5)])
-        picture.stroke(line(strand), mix(HAIR, INK, 0.4), 2.5)
+    left = [(-68, -34), (-71, -8), (-61, 4), (-54, -12), (-42, -10), (-32, -20), (-12, -12)]
+    right = [(2, -22), (20, -12), (33, -21), (52, -12), (61, 4), (71, -8), (68, -34)]
+    picture.mark(closed(head.all([*left, *right, (0, -50)])), HAIR)
 
     for side in (-1, 1):
         half = head.on(side)
         picture.mark(closed(half.oval(44, 28, 12, 8)), mix(SKIN, BLUSH, 0.75))
         picture.mark(closed(half.oval(25, 12, 8, 11)), INK)
         picture.mark(closed(head.oval(side * 25 + 2.5, 7.5, 3, 3.6)), "#ffffff")
-        brow = half.all([(15, -6), (25, -9), (34, -5)])
+        brow = half.all([(15, -7), (25, -9.5), (35, -4)])
         picture.stroke(line(brow), mix(HAIR, INK, 0.5), 4)
     picture.stroke(line(head.all([(-4, 24), (0, 27), (5, 24)])), mix(SKIN, "#b04a3c", 0.7), 4)
     _mouth(picture, head, smile)
