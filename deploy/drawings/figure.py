@@ -109,8 +109,8 @@ POSES = {
     "jump": Pose(
         "Jumping for joy",
         pelvis=242 + 410j,
-        left_arm=Limb(112, 140, -6),
-        right_arm=Limb(112, 140, -6),
+        left_arm=Limb(104, 142, -6),
+        right_arm=Limb(104, 142, -6),
         left_leg=Limb(62, -14, 30),
         right_leg=Limb(46, 66, 36),
         lean=-3,
