@@ -100,11 +100,15 @@ class GroupMatching {
         const std::vector<Anchor> anchors = MarkedAnchors(i, j);
         PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
         CoarseMatch match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
-        if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours() &&
-            MeanColourDifference(curves_[i], curves_[j], match.map) <
-                options_.max_colour_difference) {
-          weights.colour = options_.colour_weight;
-          match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
+        if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours()) {
+          PairWeights coloured = weights;
+          coloured.colour = options_.colour_weight;
+          CoarseMatch by_colour = MatchCoarsely(curves_[i], curves_[j], anchors, coloured);
+          if (MeanColourDifference(curves_[i], curves_[j], by_colour.map) <
+              options_.max_colour_difference) {
+            weights = coloured;
+            match = std::move(by_colour);
+          }
         }
         costs_(i, j) = costs_(j, i) = match.cost;
         if (marks_.on.empty()) {

@@ -27,13 +27,15 @@ struct Landmark {
 
 struct MatchingOptions {
   // Weights of |position difference|^2 (in drawing sizes, from the centroids) and of |colour
-  // difference|^2 in the matching cost, and of ln(slope)^2 against uneven stretching.
-  double position_weight = 0.05;
+  // difference|^2 in the matching cost, and of ln(slope)^2 against uneven stretching.  Position
+  // says that drawings are upright; at weight 0 they may be turned.
+  double position_weight = 0.1;
   double colour_weight = 0.3;
   double stretch_weight = 0.05;
-  // Colour is used only between drawings whose mean colour difference along the map found without
-  // it is below this (RGB in [0, 1]): drawings painted in other colours say nothing by them.
-  double max_colour_difference = 0.12;
+  // Colour is used only between drawings whose mean colour difference along the map found with it
+  // is below this (RGB in [0, 1]): drawings painted in other colours say nothing by them.  One
+  // character's drawings have 0.04 to 0.17, different animals 0.2 to 0.8.
+  double max_colour_difference = 0.15;
   // Farthest a landmark may lie from the outline it marks, / size of the drawing.
   double max_landmark_distance = 0.05;
 };
@@ -42,7 +44,9 @@ struct MatchingOptions {
 struct MatchedOutlines {
   std::vector<Points> outlines;    // N of n x 2: row k is the same place on every outline
   std::vector<int> landmark_rows;  // the row of each landmark, in the caller's order
-  std::vector<double> confidence;  // per drawing, in (0, 1]: how clear its matching is; 1 when N = 1
+  // Per drawing, in (0, 1]: how clear its matching is; below 0.5 a person should look at it.  1 when
+  // N = 1.
+  std::vector<double> confidence;
 };
 
 // Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at once,
@@ -56,15 +60,16 @@ Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
 // Finds which point of each outline is which point of every other: the paper's boundary matching,
 // for N drawings at once and with no drawing privileged.
 //
-// Every corner of every outline becomes a row, so each output ring follows its outline exactly (to
-// the distance at which corners are merged, 0.25 % of the perimeter).  Each ring is simple and
-// positively oriented.  Every landmark is a row: in the drawings that it marks, that row is the
+// Every corner of every outline becomes a row, so each output ring follows its outline exactly;
+// corners of different outlines share a row when they are closer than 0.25 % of the perimeter on
+// all.  Each ring is simple and positively oriented.  Every landmark is a row: in the drawings that it marks, that row is the
 // outline point nearest to the mark.  The result depends on the order of the drawings only in the
 // order of its rows.
 //
 // Requires  N >= 1 shapes; each landmark has N entries, at least one of them set.
 // Fails     kLandmarkNotFinite, kLandmarkOffOutline (names landmark, drawing, distance and limit),
 //           kLandmarksOutOfOrder (names every contradicting pair of landmarks with two drawings),
+//           kOutlineNotSimple (an outline that passes itself as closely as numbers round),
 //           kCancelled.
 // Cost      O(N^2 M^2) with M = 64 samples to compare all pairs, O(N M^2) with M = 256 to match.
 // Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Boundary matching", with a multi-scale elastic
