@@ -74,7 +74,7 @@ POSES = {
         corner=(38, 100),
         lip=(86, 90),
         blush=0.35,
-        bunch=(-7, 102),
+        bunch=(-14, 104),
     ),
     "angry": Mood(
         "Angry",
