@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "geometry/polygon.h"
 #include "mapping/decimation.h"
 #include "mapping/editable_mesh.h"
 #include "mapping/overlay_triangulation.h"
+#include "mapping/triangle_quality.h"
 #include "mapping/zero_steiner.h"
 
 namespace posespace {
@@ -84,6 +86,21 @@ CompatibleMesh MeshWithoutSteiner(std::span<const Points> outlines,
   return mesh;
 }
 
+Result<Triangulation> OverlayAndDecimate(std::span<const Points> outlines,
+                                         const TriangulationOptions& options, Progress* progress) {
+  const int n = static_cast<int>(outlines[0].rows());
+  Triangulation result;
+  result.used_overlay = true;
+  result.mesh = TRY(TriangulateByOverlay(outlines, options.max_vertices, options.seed, progress));
+  result.overlay_vertices = result.mesh.num_vertices() - n;
+  Report(progress, 0.6);
+  EditableMesh editable(result.mesh);
+  Decimate(editable, progress);
+  result.mesh = editable.Finish();
+  result.steiner_vertices = result.mesh.num_vertices() - n;
+  return result;
+}
+
 }  // namespace
 
 Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
@@ -93,7 +110,6 @@ Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
   if (auto checked = Check(outlines, landmark_rows, options); !checked) {
     return std::move(checked).error();
   }
-  const int n = static_cast<int>(outlines[0].rows());
   const Error cancelled{ErrorCode::kCancelled, "triangulation was cancelled", {}};
 
   Triangulation result;
@@ -102,16 +118,15 @@ Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
   Report(progress, 0.3);
   if (triangles) result.mesh = MeshWithoutSteiner(outlines, *triangles);
 
-  if (!triangles || FindDefect(result.mesh)) {
-    result.used_overlay = true;
-    result.mesh = TRY(TriangulateByOverlay(outlines, options.max_vertices, options.seed, progress));
-    result.overlay_vertices = result.mesh.num_vertices() - n;
-    Report(progress, 0.6);
-    EditableMesh editable(result.mesh);
-    Decimate(editable, progress);
+  // Slivers without Steiner vertices are worse than Steiner vertices, where those do away with
+  // them.
+  if (!triangles || SharpestOf(result.mesh) > kSliverSharpness) {
+    auto overlaid = OverlayAndDecimate(outlines, options, progress);
     if (IsCancelled(progress)) return cancelled;
-    result.mesh = editable.Finish();
-    result.steiner_vertices = result.mesh.num_vertices() - n;
+    if (!overlaid && !triangles) return std::move(overlaid).error();
+    if (overlaid && (!triangles || SharpestOf(overlaid->mesh) < SharpestOf(result.mesh))) {
+      result = std::move(*overlaid);
+    }
   }
   result.mesh.landmarks.assign(landmark_rows.begin(), landmark_rows.end());
   if (FindDefect(result.mesh)) {

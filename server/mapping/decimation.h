@@ -7,13 +7,9 @@
 
 namespace posespace {
 
-// Takes out an interior vertex if its link has a triangulation in common in all poses that uses no
-// edge of the mesh; the best one fills it.  `sharpest`: no new triangle may be sharper (see
-// triangle_quality.h).  Every triangle stays positive, by exact predicates.
-bool RemoveVertex(EditableMesh& mesh, int vertex, double sharpest);
-
-// Removes interior vertices that are no landmarks, with smoothing and flips in between, until no
-// more can be removed.  Stops early when cancelled; the mesh is valid at any time.
+// Removes and merges interior vertices that are no landmarks, with flips and smoothing in between,
+// until nothing more goes.  It makes no sliver (triangle_quality.h) where there was none.  Stops
+// early when cancelled; the mesh is valid at any time.
 void Decimate(EditableMesh& mesh, Progress* progress);
 
 }  // namespace posespace

@@ -134,11 +134,17 @@ int EditableMesh::Split(int a, int b, std::span<const Point> positions) {
   return v;
 }
 
-void EditableMesh::Remove(int vertex, std::span<const Triangle> triangles) {
-  const std::vector<int> star = around_[vertex];
-  for (const int t : star) DropTriangle(t);
-  for (const Triangle& corners : triangles) AddTriangle(corners);
-  ++removed_;
+void EditableMesh::Refill(std::span<const int> patch, std::span<const Triangle> filling) {
+  std::vector<int> touched;
+  for (const int t : patch) {
+    touched.insert(touched.end(), triangles_[t].begin(), triangles_[t].end());
+    DropTriangle(t);
+  }
+  for (const Triangle& corners : filling) AddTriangle(corners);
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  removed_ += static_cast<int>(
+      std::count_if(touched.begin(), touched.end(), [&](int v) { return !IsLive(v); }));
 }
 
 CompatibleMesh EditableMesh::Finish() const {

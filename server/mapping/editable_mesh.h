@@ -38,6 +38,8 @@ class EditableMesh {
   const Triangle& At(int triangle) const { return triangles_[triangle]; }
   std::span<const int> TrianglesAt(int vertex) const { return around_[vertex]; }
 
+  // The triangle with the side a -> b, or -1.
+  int Find(int a, int b) const;
   // c of the triangle (a, b, c), or -1 when no triangle has the side a -> b.
   int Opposite(int a, int b) const;
   bool HasEdge(int a, int b) const { return Opposite(a, b) >= 0 || Opposite(b, a) >= 0; }
@@ -60,14 +62,14 @@ class EditableMesh {
   // and part of its boundary loop when the edge is.
   int Split(int a, int b, std::span<const Point> positions);
 
-  // Takes out an interior vertex and fills its link with `triangles`.
-  void Remove(int vertex, std::span<const Triangle> triangles);
+  // Puts `filling` in the place of the triangles `patch`.  Vertices left without a triangle are
+  // gone.
+  void Refill(std::span<const int> patch, std::span<const Triangle> filling);
 
   // The mesh with removed vertices left out; the others keep their order.
   CompatibleMesh Finish() const;
 
  private:
-  int Find(int a, int b) const;  // the triangle with the side a -> b, or -1
   void AddTriangle(const Triangle& corners);
   void DropTriangle(int triangle);
 

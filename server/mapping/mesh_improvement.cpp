@@ -29,23 +29,11 @@ constexpr int kFinalRounds = 12;     // of flips and smoothing, at most
 
 double Cotangent(double degrees) { return 1.0 / std::tan(degrees * std::numbers::pi / 180.0); }
 
-double SharpestOf(const CompatibleMesh& mesh) {
-  double sharpest = 0.0;
-  for (const Points& pose : mesh.poses) {
-    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-      const auto corners = mesh.triangles.row(t);
-      sharpest = std::max(
-          sharpest, Sharpness(pose.row(corners[0]), pose.row(corners[1]), pose.row(corners[2])));
-    }
-  }
-  return sharpest;
-}
-
-// Refines by length.  A triangle that is not as sharp as `tradable` may become so on the way.
-CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable,
+// Refines by length.  A triangle that is not as sharp as `tradable` may become so on the way;
+// splits make none sharper than `sharpest`.
+CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable, double sharpest,
                               const ImprovementOptions& options, Progress* progress) {
   const double sharp = Cotangent(15.0);
-  const double sharpest = std::max(tradable, SharpestOf(mesh));
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   EditableMesh editable(mesh);
   Relax(editable, 2, kSweeps, tradable, progress);
@@ -68,7 +56,7 @@ CompatibleMesh RefineKeepingAngles(CompatibleMesh mesh, const ImprovementOptions
   const double given = MinAngle(mesh), sharpest = SharpestOf(mesh);
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   for (;;) {
-    CompatibleMesh improved = RefineByLength(mesh, sharpest, options, progress);
+    CompatibleMesh improved = RefineByLength(mesh, sharpest, sharpest, options, progress);
     if (MinAngle(improved) < given) improved = mesh;
     const Eigen::Index finer = mesh.num_vertices() + EdgesOf(mesh.triangles).rows();
     if (IsCancelled(progress) ||
@@ -85,7 +73,9 @@ Result<CompatibleMesh> ImproveMesh(CompatibleMesh mesh, const ImprovementOptions
                                    Progress* progress) {
   // Free trade between angles makes the best mesh, but may end below a good mesh's smallest angle.
   const double given = MinAngle(mesh);
-  CompatibleMesh improved = RefineByLength(mesh, Cotangent(5.0), options, progress);
+  const double tradable = Cotangent(5.0);
+  const double sharpest = 2.0 * std::max(tradable, SharpestOf(mesh));
+  CompatibleMesh improved = RefineByLength(mesh, tradable, sharpest, options, progress);
   if (MinAngle(improved) < given) {
     improved = RefineKeepingAngles(std::move(mesh), options, progress);
   }

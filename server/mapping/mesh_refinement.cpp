@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "geometry/polygon.h"
-#include "mapping/decimation.h"
 #include "mapping/triangle_quality.h"
+#include "mapping/vertex_removal.h"
 
 namespace posespace {
 namespace {
@@ -25,18 +25,6 @@ double Length(const EditableMesh& mesh, std::span<const double> targets, int a, 
     longest = std::max(longest, length / targets[pose]);
   }
   return longest;
-}
-
-double SharpnessAt(const EditableMesh& mesh, int vertex) {
-  double sharpest = 0.0;
-  for (const int t : mesh.TrianglesAt(vertex)) {
-    const auto [a, b, c] = mesh.At(t);
-    for (int pose = 0; pose < mesh.num_poses(); ++pose) {
-      sharpest =
-          std::max(sharpest, Sharpness(mesh.At(pose, a), mesh.At(pose, b), mesh.At(pose, c)));
-    }
-  }
-  return sharpest;
 }
 
 // The middle of the boundary edge a -> b.  Where rounding would push it out of the drawing, to the
@@ -147,13 +135,13 @@ void RemoveAtSharpTriangles(EditableMesh& mesh, double sharpest, Progress* progr
   std::vector<std::pair<double, int>> order;
   for (int v = 0; v < mesh.num_vertices(); ++v) {
     if (!mesh.IsLive(v) || mesh.IsFixed(v)) continue;
-    const double sharpness = SharpnessAt(mesh, v);
+    const double sharpness = SharpnessAround(mesh, v);
     if (sharpness > sharpest) order.emplace_back(-sharpness, v);
   }
   std::sort(order.begin(), order.end());
   for (const auto& [rank, v] : order) {
     if (IsCancelled(progress)) return;
-    const double sharpness = SharpnessAt(mesh, v);
+    const double sharpness = SharpnessAround(mesh, v);
     if (sharpness > sharpest) RemoveVertex(mesh, v, kLeastGain * sharpness);
   }
 }

@@ -21,6 +21,23 @@ inline double Sharpness(const Point& a, const Point& b, const Point& c) {
   return (ab + bc + ca - 2.0 * std::min({ab, bc, ca})) / (2.0 * doubled_area);
 }
 
+// The largest Sharpness of a mesh, over all poses.
+inline double SharpestOf(const CompatibleMesh& mesh) {
+  double sharpest = 0.0;
+  for (const Points& pose : mesh.poses) {
+    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+      const auto corners = mesh.triangles.row(t);
+      sharpest = std::max(
+          sharpest, Sharpness(pose.row(corners[0]), pose.row(corners[1]), pose.row(corners[2])));
+    }
+  }
+  return sharpest;
+}
+
+// A tenth of a degree.  A triangle sharper than this is a sliver: valid, but of no use to a blend
+// where another can be had.
+inline constexpr double kSliverSharpness = 573.0;
+
 // Sum of squared sides over area, 1 for an equilateral triangle (inverse mean ratio).  As a
 // function of one corner it is convex where the triangle is positive.
 inline double Distortion(const Point& a, const Point& b, const Point& c) {
