@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A build watched to its end."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+
+from posespace import messages
+from posespace.channel import Channel
+from posespace.errors import Cancelled, DeadlineExceeded, Error, Unavailable, error_of_reason
+from posespace.results import BuildReport
+from posespace.v1 import session_service_pb2
+
+OnProgress = Callable[[str, float], object]
+
+_FIRST_PAUSE, _LONGEST_PAUSE = 0.05, 1.0  # seconds between tries to reach the service again
+
+
+def build_and_wait(
+    channel: Channel,
+    request: session_service_pb2.StartBuildRequest,
+    on_progress: OnProgress | None,
+    timeout: float | None,
+) -> BuildReport:
+    """Starts a build and follows it to its end; see Session.build."""
+    deadline = None if timeout is None else time.monotonic() + timeout
+    session_id = request.session_id
+    build_id = channel.call(channel.sessions.StartBuild, request).build.id
+    try:
+        for build in _changes(channel, session_id, deadline):
+            if build.id != build_id:
+                raise Cancelled(
+                    f"another build of session '{session_id}' has replaced this one",
+                    reason="CANCELLED",
+                )
+            if on_progress is not None:
+                on_progress(build.stage, build.fraction)
+            if build.HasField("error"):
+                fields = dict.fromkeys(build.error.fields, build.error.message)
+                raise error_of_reason(build.error.reason, build.error.message, fields)
+            if build.state == session_service_pb2.BUILD_STATE_SUCCEEDED:
+                break
+        return messages.report(build.report)
+    except DeadlineExceeded as error:
+        if error.reason:  # the service's own limit
+            raise
+        _cancel(channel, session_id)
+        raise DeadlineExceeded(
+            f"session '{session_id}' was not built within {timeout:g} s; its build is cancelled"
+        ) from None
+    except Error:
+        raise
+    except BaseException:  # Ctrl-C, or what on_progress raised
+        _cancel(channel, session_id)
+        raise
+
+
+def _cancel(channel: Channel, session_id: str) -> None:
+    request = session_service_pb2.CancelBuildRequest(session_id=session_id)
+    with contextlib.suppress(Error):
+        channel.call(channel.sessions.CancelBuild, request)
+
+
+def _changes(
+    channel: Channel, session_id: str, deadline: float | None
+) -> Iterator[session_service_pb2.Build]:
+    """The build after each change, without end: where the stream breaks it is taken up again after
+    the last change seen, until the service was away for longer than the timeout."""
+    after_sequence = 0
+    pause = _FIRST_PAUSE
+    last_heard = time.monotonic()
+    while True:
+        request = session_service_pb2.WatchBuildRequest(
+            session_id=session_id, after_sequence=after_sequence
+        )
+        remaining = None if deadline is None else max(0.0, deadline - time.monotonic())
+        watch = channel.stream(channel.sessions.WatchBuild, request, remaining)
+        try:
+            with contextlib.closing(watch):
+                for event in watch:
+                    after_sequence = event.build.sequence
+                    yield event.build
+                    pause, last_heard = _FIRST_PAUSE, time.monotonic()
+        except Unavailable:
+            if time.monotonic() - last_heard > channel.timeout:
+                raise
+        time.sleep(pause)
+        pause = min(2 * pause, _LONGEST_PAUSE)

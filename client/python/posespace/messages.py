@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python values to messages and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from posespace import results
+from posespace.errors import InvalidArgument, NotFound
+from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
+
+T = TypeVar("T")
+
+BlendMethod = Literal["rigid", "linear", "paper"]
+ShearLimit = Literal["band", "hermite", "off"]
+Place = Sequence[float] | NDArray[np.floating[Any]]  # x and y
+
+_METHODS = {
+    "rigid": pose_service_pb2.BLEND_METHOD_RIGID,
+    "linear": pose_service_pb2.BLEND_METHOD_LINEAR,
+    "paper": pose_service_pb2.BLEND_METHOD_PAPER,
+}
+_SHEAR_LIMITS = {
+    None: pose_service_pb2.SHEAR_LIMIT_UNSPECIFIED,
+    "band": pose_service_pb2.SHEAR_LIMIT_BAND,
+    "hermite": pose_service_pb2.SHEAR_LIMIT_HERMITE,
+    "off": pose_service_pb2.SHEAR_LIMIT_OFF,
+}
+_FOREGROUNDS = {"alpha": session_service_pb2.FOREGROUND_ALPHA}
+
+
+def _choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
+    try:
+        return choices[value]
+    except (KeyError, TypeError):
+        words = ", ".join(f"'{word}'" for word in choices if word is not None)
+        raise InvalidArgument(
+            f"{name} is {value!r}, not one of {words}", reason="INVALID_OPTION"
+        ) from None
+
+
+def foreground(name: str) -> session_service_pb2.Foreground:
+    """The wire's number of a foreground."""
+    return _choice("foreground", name, _FOREGROUNDS)
+
+
+def points_array(points: ArrayLike, what: str) -> NDArray[np.float64]:
+    """(K, 2) float64, or InvalidArgument: flattened on the wire, another shape would go unseen."""
+    array = np.asarray(points, dtype=np.float64)
+    if array.size == 0:
+        array = array.reshape(0, 2)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InvalidArgument(
+            f"{what} must be points (K, 2), not {array.shape}", reason="INVALID_OPTION"
+        )
+    return array
+
+
+def ring(points: ArrayLike, what: str) -> geometry_pb2.Ring:
+    """A closed polygon."""
+    return geometry_pb2.Ring(coordinates=points_array(points, what).ravel())
+
+
+def point(xy: Place, what: str) -> geometry_pb2.Point:
+    """A point of two numbers."""
+    if len(xy) != 2:
+        raise InvalidArgument(f"{what} must be x and y, not {xy!r}", reason="INVALID_OPTION")
+    return geometry_pb2.Point(x=float(xy[0]), y=float(xy[1]))
+
+
+def blend_options(
+    method: BlendMethod, shear_limit: ShearLimit | None, refits: int | None, sigma: float
+) -> pose_service_pb2.BlendOptions:
+    """How to blend."""
+    options = pose_service_pb2.BlendOptions(
+        method=_choice("method", method, _METHODS),
+        shear_limit=_choice("shear_limit", shear_limit, _SHEAR_LIMITS),
+        sigma=sigma,
+    )
+    if refits is not None:
+        options.refits = refits
+    return options
+
+
+def query(
+    at: Place | None,
+    weights: Mapping[str, float] | None,
+    shape_ids: Sequence[str],
+    options: pose_service_pb2.BlendOptions,
+) -> pose_service_pb2.Query:
+    """Where and how, from exactly one of `at` and `weights`; drawings without a weight get 0."""
+    if (at is None) == (weights is None):
+        raise InvalidArgument("give either at= or weights=", reason="INVALID_OPTION")
+    if at is not None:
+        return pose_service_pb2.Query(at=point(at, "at"), options=options)
+    assert weights is not None
+    for shape_id in weights:
+        if shape_id not in shape_ids:
+            raise NotFound(
+                f"weights name shape '{shape_id}', which the built pose space does not have; it "
+                f"has {', '.join(shape_ids)}",
+                reason="SHAPE_NOT_FOUND",
+            )
+    values = [float(weights.get(shape_id, 0.0)) for shape_id in shape_ids]
+    return pose_service_pb2.Query(weights=pose_service_pb2.Weights(values=values), options=options)
+
+
+def at_queries(
+    points: Iterable[Place], options: pose_service_pb2.BlendOptions
+) -> list[pose_service_pb2.Query]:
+    """One query a point."""
+    return [
+        pose_service_pb2.Query(at=geometry_pb2.Point(x=x, y=y), options=options) for x, y in points
+    ]
+
+
+def correspondence(points: Mapping[str, Place]) -> session_service_pb2.Correspondence:
+    """One place of the character, marked in some drawings."""
+    message = session_service_pb2.Correspondence()
+    for shape_id, xy in points.items():
+        message.points[shape_id].CopyFrom(point(xy, f"the mark in shape '{shape_id}'"))
+    return message
+
+
+def _rings(messages: Iterable[geometry_pb2.Ring]) -> list[NDArray[np.float64]]:
+    return [np.array(message.coordinates).reshape(-1, 2) for message in messages]
+
+
+def _texture(message: geometry_pb2.TexturePlacement) -> results.TexturePlacement:
+    origin = (message.origin.x, message.origin.y)
+    return results.TexturePlacement(origin, message.scale, message.width, message.height)
+
+
+def shape(message: session_service_pb2.Shape) -> results.Shape:
+    """A drawing as the service understood it."""
+    return results.Shape(
+        id=message.id,
+        size=(message.width, message.height),
+        outline=_rings(message.outline),
+        holes_filled=message.holes_filled,
+        warnings=list(message.warnings),
+        texture=_texture(message.texture),
+    )
+
+
+def report(message: geometry_pb2.BuildReport) -> results.BuildReport:
+    """How a build went."""
+    return results.BuildReport(
+        revision=message.revision,
+        vertices=message.vertices,
+        triangles=message.triangles,
+        outline_vertices=message.outline_vertices,
+        steiner_vertices=message.steiner_vertices,
+        min_angle=message.min_angle,
+        levels=dict(message.levels),
+        seconds=dict(message.seconds),
+        confidence=dict(message.confidence),
+        warnings=list(message.warnings),
+    )
+
+
+def build(message: session_service_pb2.Build) -> results.Build:
+    """Where a build stands."""
+    state = session_service_pb2.BuildState.Name(message.state)
+    return results.Build(
+        id=message.id,
+        state=state.removeprefix("BUILD_STATE_").lower(),
+        stage=message.stage,
+        fraction=message.fraction,
+        report=report(message.report) if message.HasField("report") else None,
+    )
+
+
+def session_state(message: session_service_pb2.Session) -> results.SessionState:
+    """A session as it stands."""
+    return results.SessionState(
+        id=message.id,
+        display_name=message.display_name,
+        labels=dict(message.labels),
+        shape_ids=list(message.shape_ids),
+        correspondences=[
+            {shape_id: (at.x, at.y) for shape_id, at in tuple_.points.items()}
+            for tuple_ in message.correspondences
+        ],
+        placements={place.shape_id: (place.at.x, place.at.y) for place in message.placements},
+        placements_are_default=message.placements_are_default,
+        etag=message.etag,
+        create_time=message.create_time.ToDatetime(UTC),
+        update_time=message.update_time.ToDatetime(UTC),
+        revision=message.revision,
+        build=build(message.build) if message.HasField("build") else None,
+    )
+
+
+def mesh(message: geometry_pb2.Mesh) -> results.Mesh:
+    """One triangle list that is valid in every drawing."""
+    poses = message.poses
+    return results.Mesh(
+        revision=message.revision,
+        shape_ids=[pose.shape_id for pose in poses],
+        triangles=np.array(message.triangles, dtype=np.int32).reshape(-1, 3),
+        vertices={pose.shape_id: np.array(pose.vertices).reshape(-1, 2) for pose in poses},
+        boundary=[np.array(loop.vertices, dtype=np.int32) for loop in message.boundary],
+        outlines={pose.shape_id: _rings(pose.outlines) for pose in poses},
+        landmarks=np.array(message.landmarks, dtype=np.int32),
+        turns={pose.shape_id: pose.turns for pose in poses},
+        textures={pose.shape_id: _texture(pose.texture) for pose in poses},
+        report=report(message.report),
+    )
+
+
+def frame(
+    message: pose_service_pb2.Frame, shape_ids: Sequence[str], revision: str
+) -> results.Frame:
+    """A drawing at a place of pose space."""
+    return results.Frame(
+        vertices=np.frombuffer(message.vertices, dtype="<f4").reshape(-1, 2),
+        weights=dict(zip(shape_ids, message.weights, strict=False)),
+        texture_weights=dict(zip(shape_ids, message.texture_weights, strict=False)),
+        folds=message.folds,
+        revision=revision,
+    )

@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The stream of frames that avatar servers live on."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import grpc
+
+from posespace import messages
+from posespace.channel import Channel
+from posespace.errors import DeadlineExceeded, Error, Unavailable, error_of_reason
+from posespace.messages import BlendMethod, Place, ShearLimit
+from posespace.results import Frame
+from posespace.v1 import pose_service_pb2
+
+if TYPE_CHECKING:
+    from posespace.session import Session
+
+
+class Avatar:
+    """A session bound to a stream; made by Player.bind, it makes items for Player.tick.
+
+    session_id, slot   What is bound where.
+    revision           The pose space its next results are of; it follows rebuilds, and is empty
+                       once the session was deleted.
+    vertex_count       Vertices of a frame.
+    shape_ids          Drawings, in the order of weights.
+    """
+
+    def __init__(self, session_id: str, slot: int) -> None:
+        self.session_id = session_id
+        self.slot = slot
+        self.revision = ""
+        self.vertex_count = 0
+        self.shape_ids: list[str] = []
+
+    def item(
+        self,
+        at: Place | None = None,
+        *,
+        weights: Mapping[str, float] | None = None,
+        method: BlendMethod = "rigid",
+        refits: int | None = None,
+        shear_limit: ShearLimit | None = None,
+        sigma: float = 0.0,
+    ) -> Item:
+        """avatar.item(at=(0, 0.5)): a query as in Session.blend, to be answered by Player.tick."""
+        options = messages.blend_options(method, shear_limit, refits, sigma)
+        query = messages.query(at, weights, self.shape_ids, options)
+        return Item(self, pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query))
+
+    def _follow(self, message: Any) -> None:
+        self.revision = message.revision
+        self.vertex_count = message.vertex_count
+        self.shape_ids = list(message.shape_ids)
+
+
+class Item:
+    """One avatar's query in a tick; made by Avatar.item."""
+
+    def __init__(self, avatar: Avatar, message: pose_service_pb2.PlayRequest.Item) -> None:
+        self.avatar = avatar
+        self._message = message
+
+
+class Player:
+    """A stream of frames, open as long as its `with`; made by Session.play.  One thread at a time.
+
+        with session.play() as player:
+            for frame in player.frames((0.0, t / 60) for t in range(60)):
+                draw(frame.vertices)
+
+            crowd = [player.avatar, player.bind(other_session)]      # many avatars, one message
+            for frame in player.tick([avatar.item(at=(0, 0.5)) for avatar in crowd]):
+                ...
+
+    avatar     The session that play() was called on.
+    max_slots, max_items, max_in_flight
+               Limits of the stream: sessions bound, items in a tick, frames under way at once.
+    """
+
+    def __init__(self, channel: Channel, session_id: str, revision: str) -> None:
+        self._channel = channel
+        self._outgoing: queue.SimpleQueue[pose_service_pb2.PlayRequest | None] = queue.SimpleQueue()
+        self._incoming: queue.SimpleQueue[pose_service_pb2.PlayResponse | Error] = (
+            queue.SimpleQueue()
+        )
+        self._avatars: dict[int, Avatar] = {}
+        self._asked: dict[int, list[Avatar]] = {}  # frames under way
+        self._answers: dict[int, list[Frame | Error]] = {}  # here, and not yet their turn
+        self._next_frame_id = 1
+        self._draining_at: float | None = None
+        self._ended: Error | None = None
+
+        self._call = channel.poses.Play(iter(self._outgoing.get, None))
+        self._reader = threading.Thread(target=self._read, name="posespace-play", daemon=True)
+        self._reader.start()
+        try:
+            welcome = self._receive(time.monotonic() + channel.timeout).welcome
+            self.max_slots: int = welcome.max_slots
+            self.max_items: int = welcome.max_items
+            self.max_in_flight: int = welcome.max_in_flight
+            self.avatar = self._bind(session_id, revision)
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Player:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the stream; what is still under way is lost."""
+        if self._ended is None:
+            self._ended = Unavailable("the player is closed")
+        self._outgoing.put(None)
+        self._reader.join(timeout=0.5)  # ended by the service, if it has nothing left to answer
+        self._call.cancel()
+
+    def bind(self, session: Session, *, revision: str = "") -> Avatar:
+        """Adds a session to the stream.
+
+        revision  Stay with this built pose space even when the session is built again; by default
+                  results follow the session.
+
+        Raises NotFound, NotBuilt; InvalidArgument (SLOT_LIMIT) beyond max_slots.
+        """
+        return self._bind(session.id, revision)
+
+    def unbind(self, avatar: Avatar) -> None:
+        """Frees an avatar's slot for another."""
+        if self._avatars.get(avatar.slot) is avatar:
+            del self._avatars[avatar.slot]
+            self._send(
+                pose_service_pb2.PlayRequest(
+                    unbind=pose_service_pb2.PlayRequest.Unbind(slot=avatar.slot)
+                )
+            )
+
+    def frames(
+        self,
+        points: Iterable[Place],
+        *,
+        avatar: Avatar | None = None,
+        method: BlendMethod = "rigid",
+        refits: int | None = None,
+        shear_limit: ShearLimit | None = None,
+        sigma: float = 0.0,
+        with_weights: bool = True,
+    ) -> Iterator[Frame]:
+        """One frame a point, in order.
+
+        Up to max_in_flight frames are under way while yours is being used, so `points` is read that
+        far ahead; it may be endless.  Options as in Session.blend; `avatar` is by default the
+        session that play() was called on; without weights frames are smaller on the wire.
+
+        Raises the errors of Session.blend for a point that cannot be answered (the stream goes on),
+        DeadlineExceeded when a frame takes longer than the client's timeout, Unavailable when the
+        service ends.
+        """
+        avatar = avatar or self.avatar
+        options = messages.blend_options(method, shear_limit, refits, sigma)
+        under_way: deque[int] = deque()
+
+        def oldest() -> Frame:
+            frame = self._await(under_way.popleft())[0]
+            if isinstance(frame, Error):
+                raise frame
+            return frame
+
+        try:
+            for at in points:
+                query = messages.query(at, None, (), options)
+                message = pose_service_pb2.PlayRequest.Item(slot=avatar.slot, query=query)
+                under_way.append(self._ask([Item(avatar, message)], with_weights))
+                if len(under_way) >= max(1, self.max_in_flight):
+                    yield oldest()
+            while under_way:
+                yield oldest()
+        finally:  # abandoned: their results are dropped as they come
+            for frame_id in under_way:
+                self._forget(frame_id)
+
+    def tick(self, items: Iterable[Item], *, with_weights: bool = True) -> list[Frame | Error]:
+        """Many avatars' frames, asked for in one message and answered together, in order.
+
+        An item that cannot be answered has its error in its place, not raised: one avatar's mistake
+        leaves the others alone.  More than max_items items go in several messages.
+
+        Raises DeadlineExceeded when the answer takes longer than the client's timeout, Unavailable
+        when the service ends.
+        """
+        items = list(items)
+        step = max(1, self.max_items)
+        asked = [
+            self._ask(items[first : first + step], with_weights)
+            for first in range(0, len(items), step)
+        ]
+        try:
+            return [answer for frame_id in asked for answer in self._await(frame_id)]
+        finally:
+            for frame_id in asked:
+                self._forget(frame_id)
+
+    def _bind(self, session_id: str, revision: str) -> Avatar:
+        slot = next(slot for slot in range(len(self._avatars) + 1) if slot not in self._avatars)
+        self._send(
+            pose_service_pb2.PlayRequest(
+                bind=pose_service_pb2.PlayRequest.Bind(
+                    slot=slot, session_id=session_id, pinned_revision=revision
+                )
+            )
+        )
+        give_up = time.monotonic() + self._channel.timeout
+        while True:
+            bound = self._receive(give_up).bound
+            if bound.slot == slot and (bound.reason or bound.revision):
+                break
+        if bound.reason:
+            raise error_of_reason(bound.reason, bound.error_message)
+        avatar = Avatar(session_id, slot)
+        avatar._follow(bound)
+        self._avatars[slot] = avatar
+        return avatar
+
+    def _ask(self, items: list[Item], with_weights: bool) -> int:
+        frame_id = self._next_frame_id
+        self._next_frame_id += 1
+        self._send(
+            pose_service_pb2.PlayRequest(
+                tick=pose_service_pb2.PlayRequest.Tick(
+                    frame_id=frame_id,
+                    items=[item._message for item in items],
+                    with_weights=with_weights,
+                )
+            )
+        )
+        self._asked[frame_id] = [item.avatar for item in items]
+        return frame_id
+
+    def _await(self, frame_id: int) -> list[Frame | Error]:
+        """The answers of one frame; those of others are kept for their turn."""
+        give_up = time.monotonic() + self._channel.timeout
+        while frame_id not in self._answers:
+            self._receive(give_up)
+        return self._answers.pop(frame_id)
+
+    def _forget(self, frame_id: int) -> None:
+        self._asked.pop(frame_id, None)
+        self._answers.pop(frame_id, None)
+
+    def _send(self, request: pose_service_pb2.PlayRequest) -> None:
+        if self._draining_at is not None and time.monotonic() >= self._draining_at:
+            self._ended = Unavailable(
+                f"the service at {self._channel.address} is ending", reason="DRAINING"
+            )
+        if self._ended is not None:
+            raise self._ended
+        self._outgoing.put(request)
+
+    def _receive(self, give_up: float) -> pose_service_pb2.PlayResponse:
+        """The next message, already taken note of."""
+        if self._ended is not None:
+            raise self._ended
+        try:
+            message = self._incoming.get(timeout=max(0.0, give_up - time.monotonic()))
+        except queue.Empty:
+            raise DeadlineExceeded(
+                f"no answer from {self._channel.address} within {self._channel.timeout:g} s"
+            ) from None
+        if isinstance(message, Error):
+            self._ended = message
+            raise message
+        kind = message.WhichOneof("message")
+        if kind == "frame_result":
+            self._take(message.frame_result)
+        elif kind == "revision_changed" and message.revision_changed.slot in self._avatars:
+            self._avatars[message.revision_changed.slot]._follow(message.revision_changed)
+        elif kind == "draining":
+            grace = message.draining.stop_sending_in.ToTimedelta().total_seconds()
+            self._draining_at = time.monotonic() + grace
+        return message
+
+    def _take(self, result: pose_service_pb2.PlayResponse.FrameResult) -> None:
+        """Keeps a frame's answers, with the revision that its avatars have at this moment."""
+        avatars = self._asked.pop(result.frame_id, None)
+        if avatars is None:  # nobody waits for it any more
+            return
+        self._answers[result.frame_id] = [
+            error_of_reason(item.reason, item.error_message)
+            if item.reason
+            else messages.frame(item.frame, avatar.shape_ids, avatar.revision)
+            for avatar, item in zip(avatars, result.items, strict=True)
+        ]
+
+    def _read(self) -> None:
+        """Hands over what the service says; a stream alone would wait for it without a limit."""
+        try:
+            for message in self._call:
+                self._incoming.put(message)
+            self._incoming.put(
+                Unavailable(f"the service at {self._channel.address} has ended the stream")
+            )
+        except grpc.RpcError as error:
+            self._incoming.put(self._channel.error_of(error))

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What calls answer: values, not handles.  Drawing coordinates are pixels, x right, y down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import numpy as np
+from numpy.typing import NDArray
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class TexturePlacement:
+    """Where a drawing's pixels lie: texel = (point - origin) * scale, texel (i, j) covering
+    [i, i+1] x [j, j+1]."""
+
+    origin: Point
+    scale: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A drawing as the service understood it.
+
+    outline       Rings (K, 2) float64, outer first, holes after it.
+    size          Drawing pixels across and down.
+    holes_filled  Holes that the mesh covers; transparency keeps them see-through.
+    warnings      What was done to the drawing, in words.
+    texture       Where the drawing's pixels lie.
+    """
+
+    id: str
+    size: tuple[float, float]
+    outline: list[NDArray[np.float64]] = field(repr=False)
+    holes_filled: int
+    warnings: list[str]
+    texture: TexturePlacement
+
+
+@dataclass(frozen=True, eq=False)
+class BuildReport:
+    """How a build went.
+
+    revision          The built pose space.
+    vertices, triangles, outline_vertices, steiner_vertices
+                      Sizes of the mesh; the latter two before refinement.
+    min_angle         Smallest angle over all triangles and drawings, radians.
+    levels            How many parts each level of the triangulation solved.
+    seconds           By stage.
+    confidence        By drawing: how clear the automatic matching was, in (0, 1].
+    warnings          What a person should know, such as drawings to check.
+    """
+
+    revision: str
+    vertices: int
+    triangles: int
+    outline_vertices: int
+    steiner_vertices: int
+    min_angle: float
+    levels: dict[str, int]
+    seconds: dict[str, float]
+    confidence: dict[str, float]
+    warnings: list[str]
+
+
+@dataclass(frozen=True, eq=False)
+class Build:
+    """Where a build stands.
+
+    state     "queued", "running", "succeeded", "failed" or "cancelled".
+    stage     "matching", "simplification", "triangulation", "improvement" or "weights".
+    fraction  Done so far, 0 to 1.
+    report    When it succeeded.
+    """
+
+    id: str
+    state: str
+    stage: str
+    fraction: float
+    report: BuildReport | None
+
+
+@dataclass(frozen=True, eq=False)
+class SessionState:
+    """A session as it stood when it was asked.
+
+    shape_ids               Drawings in the order of upload.
+    correspondences         One dict a marked place: drawing -> point, drawing pixels.
+    placements              Drawing -> point of pose space.
+    placements_are_default  Nobody has set placements: one drawing lies at (0, 0), several on the
+                            unit circle.
+    etag                    Changes with every change of the session.
+    revision                The pose space that blends use; empty before the first build.
+    build                   The latest build; None before the first.
+    """
+
+    id: str
+    display_name: str
+    labels: dict[str, str]
+    shape_ids: list[str]
+    correspondences: list[dict[str, Point]]
+    placements: dict[str, Point]
+    placements_are_default: bool
+    etag: str
+    create_time: datetime
+    update_time: datetime
+    revision: str
+    build: Build | None
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """One triangle list that is valid in every drawing.
+
+    shape_ids   Drawings in the order of weights.
+    triangles   (T, 3) int32, positive (x right, y down) in every drawing.
+    vertices    Drawing -> (V, 2) float64, drawing pixels.
+    boundary    Loops of vertex indices (K,) int32, outer first.
+    outlines    Drawing -> rings (K, 2) float64 as extracted, outer first.
+    landmarks   (L,) int32: the vertex of each correspondence.
+    turns       Drawing -> whole turns added to its mean rotation.
+    textures    Drawing -> where its pixels lie; texture coordinates are `vertices`.
+    """
+
+    revision: str
+    shape_ids: list[str]
+    triangles: NDArray[np.int32] = field(repr=False)
+    vertices: dict[str, NDArray[np.float64]] = field(repr=False)
+    boundary: list[NDArray[np.int32]] = field(repr=False)
+    outlines: dict[str, list[NDArray[np.float64]]] = field(repr=False)
+    landmarks: NDArray[np.int32] = field(repr=False)
+    turns: dict[str, int]
+    textures: dict[str, TexturePlacement]
+    report: BuildReport
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A drawing at a place of pose space.
+
+    vertices         (V, 2) float32, drawing pixels; read-only, so copy before writing.
+    weights          Drawing -> weight; they sum to 1 and may lie outside [0, 1].
+    texture_weights  Drawing -> weight of its pixels, in [0, 1]; they sum to 1.
+    folds            Triangles that are not positive; 0 in a good frame.
+    revision         The pose space it is of.
+    """
+
+    vertices: NDArray[np.float32] = field(repr=False)
+    weights: Mapping[str, float]
+    texture_weights: Mapping[str, float]
+    folds: int
+    revision: str
