@@ -30,7 +30,7 @@ std::string Quoted(const std::string& id) {
   if (id.size() <= kMaxLength) return "'" + id + "'";
   std::size_t cut = kMaxLength;
   while (cut > 0 && (static_cast<unsigned char>(id[cut]) & 0xC0) == 0x80) --cut;  // whole UTF-8
-  return "'" + id.substr(0, cut) + "...'";
+  return "'" + std::string(id, 0, cut) + "...'";
 }
 
 }  // namespace posespace

@@ -20,15 +20,14 @@ class Registry {
   ~Registry();
 
   struct NewSession {
-    std::string id;            // empty: an unguessable one is chosen (128 random bits)
-    std::string display_name;  // up to 256 bytes
-    std::map<std::string, std::string> labels;  // up to 64, keys and values up to 256 bytes
-    std::string
-        request_id;  // up to 256 bytes; the same again returns the session of the first call
+    std::string id = {};            // empty: an unguessable one is chosen (128 random bits)
+    std::string display_name = {};  // up to 256 bytes
+    std::map<std::string, std::string> labels = {};  // up to 64, keys and values up to 256 bytes
+    std::string request_id = {};                     // up to 256 bytes
   };
-  // Fails  kInvalidId, kSessionExists, kSessionLimit, kInvalidOption (labels and the like; a
-  // request_id
-  //        that came with another id).
+  // The same request_id again returns the session of the first call.
+  // Fails  kInvalidId, kSessionExists, kSessionLimit, kInvalidOption (texts beyond their bounds; a
+  //        request_id that came with another id).
   Result<std::shared_ptr<Session>> Create(NewSession request);
 
   // Fails  kInvalidId (empty), kSessionNotFound.

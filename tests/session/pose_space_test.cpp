@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session/pose_space.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <thread>
+
+#include "geometry/polygon.h"
+#include "session/placements.h"
+#include "tests/session/sample_drawings.h"
+#include "tests/support/fails_with.h"
+#include "tests/support/points.h"
+
+namespace posespace {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::shared_ptr<const PoseSpace> Built(const BuildInputs& inputs) {
+  auto built = PoseSpace::Build(inputs);
+  EXPECT_THAT(built, Succeeds());
+  return built ? *built : nullptr;
+}
+
+// A pose space of three creatures that tests share, since it is immutable.
+const PoseSpace& Creatures() {
+  static const auto pose_space = Built(CreatureInputs(3));
+  return *pose_space;
+}
+
+Query At(double x, double y) { return {Point(x, y), {}, 0.0}; }
+
+Query With(std::initializer_list<double> weights) {
+  Query query{Eigen::VectorXd(static_cast<Eigen::Index>(weights.size())), {}, 0.0};
+  std::copy(weights.begin(), weights.end(), std::get<Eigen::VectorXd>(query.position).begin());
+  return query;
+}
+
+double Distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+
+TEST(PoseSpace, ReproducesEachDrawingAtItsPlace) {
+  const PoseSpace& space = Creatures();
+  for (int i = 0; i < 3; ++i) {
+    const Point place = space.placements().row(i);
+    const auto frame = space.Blend(At(place.x(), place.y()));
+    ASSERT_THAT(frame, Succeeds());
+    EXPECT_LT(Distance(frame->vertices, space.mesh().poses[i]), 1e-6);
+    EXPECT_NEAR(frame->weights[i], 1.0, 1e-9);
+    EXPECT_NEAR(frame->texture_weights[i], 1.0, 1e-9);
+    EXPECT_EQ(frame->folds, 0);
+  }
+}
+
+TEST(PoseSpace, HasAMeshThatIsValidInEveryDrawing) {
+  const PoseSpace& space = Creatures();
+  EXPECT_FALSE(FindDefect(space.mesh()).has_value());
+  EXPECT_EQ(space.mesh().num_poses(), 3);
+  EXPECT_EQ(space.drawings()[1]->id, "pose1");
+}
+
+TEST(PoseSpace, IsOneDrawingEverywhereWhenThereIsOne) {
+  const auto space = Built(CreatureInputs(1));
+  ASSERT_NE(space, nullptr);
+  for (const Query& query : {At(0, 0), At(5, -7), At(1e300, 0), With({1.0})}) {
+    const auto frame = space->Blend(query);
+    ASSERT_THAT(frame, Succeeds());
+    EXPECT_LT(Distance(frame->vertices, space->mesh().poses[0]), 1e-6);
+  }
+}
+
+TEST(PoseSpace, GivesWeightsThatSumToOneEverywhere) {
+  for (const Query& query :
+       {At(0, 0), At(0.3, 0.4), At(-40, 7), At(1e300, -1e300), With({0.2, 0.3, 0.5004})}) {
+    const auto frame = Creatures().Blend(query);
+    ASSERT_THAT(frame, Succeeds());
+    EXPECT_NEAR(frame->weights.sum(), 1.0, 1e-9);
+    EXPECT_NEAR(frame->texture_weights.sum(), 1.0, 1e-9);
+    EXPECT_TRUE(frame->vertices.allFinite());
+  }
+}
+
+TEST(PoseSpace, KeepsTextureWeightsWithinZeroAndOneForRawWeights) {
+  Query query = With({1.5, -0.75, 0.25});
+  query.options.shear_limit = ShearLimit::kOff;
+  const auto frame = Creatures().Blend(query);
+  ASSERT_THAT(frame, Succeeds());
+  EXPECT_GE(frame->texture_weights.minCoeff(), 0.0);
+  EXPECT_LE(frame->texture_weights.maxCoeff(), 1.0);
+  EXPECT_EQ(frame->weights[0], 1.5);
+}
+
+TEST(PoseSpace, LeavesVerticesOutWhenOnlyWeightsAreWanted) {
+  const auto frame = Creatures().Blend(At(0.1, 0.2), true);
+  ASSERT_THAT(frame, Succeeds());
+  EXPECT_EQ(frame->vertices.rows(), 0);
+  EXPECT_EQ(frame->weights, Creatures().Blend(At(0.1, 0.2))->weights);
+}
+
+TEST(PoseSpace, RefusesWhatIsNoQuery) {
+  const PoseSpace& space = Creatures();
+  EXPECT_THAT(space.Blend(At(kNan, 0)), FailsWith(ErrorCode::kPoseNotFinite, "at"));
+  EXPECT_THAT(space.Blend(At(0, kInfinity)), FailsWith(ErrorCode::kPoseNotFinite, "at"));
+  EXPECT_THAT(space.Blend(With({})), FailsWith(ErrorCode::kWeightsCountMismatch, "weights"));
+  EXPECT_THAT(space.Blend(With({1, 0})), FailsWith(ErrorCode::kWeightsCountMismatch, "weights"));
+  EXPECT_THAT(space.Blend(With({1, kNan, 0})),
+              FailsWith(ErrorCode::kWeightsNotFinite, "weights[1]"));
+  EXPECT_THAT(space.Blend(With({kInfinity, -kInfinity, 1})),
+              FailsWith(ErrorCode::kWeightsNotFinite, "weights[0]"));
+  EXPECT_THAT(space.Blend(With({1e7, -1e7, 1})),
+              FailsWith(ErrorCode::kInvalidOption, "weights[0]"));
+
+  Query refits = At(0, 0), sigma = At(0, 0);
+  for (const int bad : {-1, 4}) {
+    refits.options.refits = bad;
+    EXPECT_THAT(space.Blend(refits), FailsWith(ErrorCode::kInvalidOption, "options.refits"));
+  }
+  for (const double bad : {-0.1, 1.1, kNan}) {
+    sigma.sigma = bad;
+    EXPECT_THAT(space.Blend(sigma), FailsWith(ErrorCode::kInvalidOption, "options.sigma"));
+  }
+}
+
+TEST(PoseSpace, TakesWeightsWhoseSumIsNearlyOne) {
+  EXPECT_THAT(Creatures().Blend(With({0.5, 0.4, 0.1009})), Succeeds());
+  EXPECT_THAT(Creatures().Blend(With({0.5, 0.4, 0.0991})), Succeeds());
+  EXPECT_THAT(Creatures().Blend(With({0.5, 0.4, 0.1011})), FailsWith(ErrorCode::kWeightsSumNotOne));
+  EXPECT_THAT(Creatures().Blend(With({0.5, 0.4, 0.0989})), FailsWith(ErrorCode::kWeightsSumNotOne));
+  EXPECT_THAT(Creatures().Blend(With({0, 0, 0})), FailsWith(ErrorCode::kWeightsSumNotOne));
+}
+
+TEST(PoseSpace, IsTheSameForTheSameInputs) {
+  const auto again = Built(CreatureInputs(3));
+  ASSERT_NE(again, nullptr);
+  EXPECT_EQ(again->revision(), Creatures().revision());
+  EXPECT_EQ(again->mesh().triangles, Creatures().mesh().triangles);
+  EXPECT_EQ(again->mesh().poses, Creatures().mesh().poses);
+  EXPECT_EQ(again->Blend(At(0.2, 0.1))->vertices, Creatures().Blend(At(0.2, 0.1))->vertices);
+}
+
+TEST(PoseSpace, KeepsItsMeshAtOtherPlacements) {
+  const Points places = PointsOf("0 0, 2 0, 0 3");
+  const auto moved = Creatures().WithPlacements(places);
+  ASSERT_THAT(moved, Succeeds());
+  EXPECT_EQ(&(*moved)->mesh(), &Creatures().mesh());
+  EXPECT_EQ((*moved)->mesh_digest(), Creatures().mesh_digest());
+  EXPECT_NE((*moved)->revision(), Creatures().revision());
+
+  BuildInputs inputs = CreatureInputs(3);
+  inputs.placements = places;
+  const auto scratch = Built(inputs);
+  ASSERT_NE(scratch, nullptr);
+  EXPECT_EQ((*moved)->revision(), scratch->revision());
+  EXPECT_EQ((*moved)->Blend(At(0.7, 0.7))->vertices, scratch->Blend(At(0.7, 0.7))->vertices);
+
+  const auto back = (*moved)->WithPlacements(Creatures().placements());
+  ASSERT_THAT(back, Succeeds());
+  EXPECT_EQ((*back)->revision(), Creatures().revision());
+}
+
+TEST(PoseSpace, TurnsTheWayItsPlacementsSay) {
+  BuildInputs inputs;
+  for (int i = 0; i < 4; ++i) {
+    const PolygonSource source{TurnedCreatureRing(1.9 * i), {}, {}};
+    inputs.drawings.push_back(DrawingOf("turn" + std::to_string(i), source));
+  }
+  for (const int row : {0, 20, 40}) {
+    Landmark& landmark = inputs.landmarks.emplace_back();
+    for (int i = 0; i < 4; ++i) landmark.points.emplace_back(TurnedCreatureRing(1.9 * i).row(row));
+  }
+  inputs.placements = PointsOf("0 0, 1 0, 2 0, 3 0");
+  inputs.options.improvement.target_edge_length = 0.25;
+  const auto space = Built(inputs);
+  ASSERT_NE(space, nullptr);
+
+  // Each step in the row turns on by 1.9, so half-way between neighbours it is turned by 0.95 more:
+  // 5.7 altogether, which is less than a turn but more than a half.
+  for (int i = 0; i < 3; ++i) {
+    Query query{Eigen::VectorXd::Zero(4).eval(), {}, 0.0};
+    auto& weights = std::get<Eigen::VectorXd>(query.position);
+    weights[i] = weights[i + 1] = 0.5;
+    const auto frame = space->Blend(query);
+    ASSERT_THAT(frame, Succeeds());
+    const double size = std::sqrt(SignedArea(TurnedCreatureRing(0.0)));
+    const Points& pose = space->mesh().poses[0];
+    const double angle = 1.9 * i + 0.95;
+    const Points centred = pose.rowwise() - Point(100, 100).transpose();
+    Eigen::Matrix2d rotation;
+    rotation << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    const Points expected =
+        (centred * rotation.transpose()).rowwise() + Point(100, 100).transpose();
+    EXPECT_LT(Distance(frame->vertices, expected), 0.2 * size) << i;
+  }
+
+  const auto circled = space->WithPlacements(PointsOf("0 0, 3 0, 1 0, 2 0"));
+  ASSERT_THAT(circled, Succeeds());
+  EXPECT_NE((*circled)->turns(), space->turns());
+}
+
+TEST(PoseSpace, DrawsItsBlendWithTheDrawingsPixels) {
+  BuildInputs inputs;
+  for (int i = 0; i < 2; ++i) {
+    inputs.drawings.push_back(DrawingOf("pose" + std::to_string(i), CreaturePicture(0.2 * i)));
+  }
+  inputs.placements = DefaultPlacements(2);
+  const auto space = Built(inputs);
+  ASSERT_NE(space, nullptr);
+  const auto frame = space->Blend(At(0, 0));
+  ASSERT_THAT(frame, Succeeds());
+  const Image image = space->Render(*frame, space->DefaultView(100, 80));
+  ASSERT_EQ(image.width, 100);
+  ASSERT_EQ(image.height, 80);
+  EXPECT_EQ(image.at(0, 0)[3], 0);
+  EXPECT_EQ(image.at(99, 79)[3], 0);
+
+  const View view = space->DefaultView(100, 80);
+  const Point middle = (Point(64, 64) - view.origin) * view.scale;
+  const std::uint8_t* pixel = image.at(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
+  EXPECT_NEAR(pixel[0], 240, 2);
+  EXPECT_NEAR(pixel[1], 140, 2);
+  EXPECT_NEAR(pixel[2], 20, 2);
+  EXPECT_EQ(pixel[3], 255);
+}
+
+TEST(PoseSpace, DrawsNothingForAFrameWithoutVertices) {
+  const auto frame = Creatures().Blend(At(0, 0), true);
+  ASSERT_THAT(frame, Succeeds());
+  const Image image = Creatures().Render(*frame, Creatures().DefaultView(20, 10));
+  EXPECT_EQ(image.rgba, std::vector<std::uint8_t>(20 * 10 * 4));
+}
+
+TEST(PoseSpace, ShowsEveryPoseInItsDefaultView) {
+  const View view = Creatures().DefaultView(200, 100);
+  for (const Points& pose : Creatures().mesh().poses) {
+    for (const auto& vertex : pose.rowwise()) {
+      const Point pixel = (Point(vertex.transpose()) - view.origin) * view.scale;
+      EXPECT_TRUE(pixel.x() > 0 && pixel.x() < 200 && pixel.y() > 0 && pixel.y() < 100);
+    }
+  }
+}
+
+TEST(PoseSpace, ReportsItsStagesInOrder) {
+  std::vector<std::string> stages;
+  double last = 0.0;
+  Progress progress([&](std::string_view stage, double fraction) {
+    if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1.0);
+    last = fraction;
+  });
+  const auto space = PoseSpace::Build(CreatureInputs(2), &progress);
+  ASSERT_THAT(space, Succeeds());
+  const std::vector<std::string> expected = {"matching", "simplification", "triangulation",
+                                             "improvement", "weights"};
+  EXPECT_EQ(stages, expected);
+  EXPECT_GE(last, 0.9);
+
+  std::vector<std::string> timed;
+  for (const auto& [stage, seconds] : (*space)->report().seconds) timed.push_back(stage);
+  EXPECT_EQ(timed, expected);
+}
+
+TEST(PoseSpace, TellsWhichDrawingsToCheck) {
+  const PoseSpace& space = Creatures();
+  ASSERT_EQ(space.report().confidence.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    const std::string id = "'pose" + std::to_string(i) + "'";
+    bool warned = false;
+    for (const std::string& warning : space.warnings()) {
+      warned = warned || warning.find(id) != std::string::npos;
+    }
+    EXPECT_FALSE(warned) << space.report().confidence[i];
+  }
+}
+
+TEST(PoseSpace, StopsWhenCancelled) {
+  Progress cancelled;
+  cancelled.Cancel();
+  EXPECT_THAT(PoseSpace::Build(CreatureInputs(3), &cancelled), FailsWith(ErrorCode::kCancelled));
+  EXPECT_THAT(Creatures().WithPlacements(PointsOf("0 0, 1 0, 0 1"), &cancelled),
+              FailsWith(ErrorCode::kCancelled));
+}
+
+TEST(PoseSpace, StopsInAnyStage) {
+  for (const char* stage :
+       {"matching", "simplification", "triangulation", "improvement", "weights"}) {
+    Progress* self = nullptr;
+    Progress progress([&](std::string_view entered, double) {
+      if (entered == stage) self->Cancel();
+    });
+    self = &progress;
+    EXPECT_THAT(PoseSpace::Build(CreatureInputs(3), &progress), FailsWith(ErrorCode::kCancelled))
+        << stage;
+  }
+}
+
+TEST(PoseSpace, ChecksItsInputsBeforeAnyWork) {
+  BuildInputs none;
+  EXPECT_THAT(PoseSpace::Build(none), FailsWith(ErrorCode::kNoShapes));
+
+  BuildInputs inputs = CreatureInputs(3);
+  inputs.placements = PointsOf("0 0, 1 0");
+  EXPECT_THAT(PoseSpace::Build(inputs), FailsWith(ErrorCode::kSizeMismatch));
+  inputs.placements = PointsOf("0 0, 1 0, 0 0");
+  EXPECT_THAT(PoseSpace::Build(inputs),
+              FailsWith(ErrorCode::kPlacementsCoincide, "placements['pose2']"));
+  inputs.placements(1, 1) = kNan;
+  EXPECT_THAT(PoseSpace::Build(inputs),
+              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1']"));
+  EXPECT_THAT(Creatures().WithPlacements(inputs.placements),
+              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1']"));
+  EXPECT_THAT(Creatures().WithPlacements(PointsOf("0 0")), FailsWith(ErrorCode::kSizeMismatch));
+}
+
+TEST(PoseSpace, IsBlendedByManyThreadsAlike) {
+  const Points expected = Creatures().Blend(At(0.3, -0.2))->vertices;
+  std::vector<std::thread> threads;
+  std::atomic<int> wrong = 0;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      for (int k = 0; k < 50; ++k) {
+        if (Creatures().Blend(At(0.3, -0.2))->vertices != expected) ++wrong;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(RevisionDigest, DependsOnEveryInput) {
+  const BuildInputs base = CreatureInputs(2);
+  std::vector<BuildInputs> others(9, base);
+  others[0].drawings.pop_back();
+  std::swap(others[1].drawings[0], others[1].drawings[1]);
+  auto renamed = *base.drawings[0];
+  renamed.id = "other";
+  others[2].drawings[0] = std::make_shared<const Drawing>(renamed);
+  auto redrawn = *base.drawings[0];
+  redrawn.digest = "other";
+  others[3].drawings[0] = std::make_shared<const Drawing>(redrawn);
+  others[4].landmarks.push_back({{Point(1, 2), std::nullopt}});
+  others[5].landmarks.push_back({{std::nullopt, Point(1, 2)}});
+  others[6].options.simplification.tolerance += 1e-12;
+  others[7].options.improvement.target_edge_length += 1e-12;
+  others[8].options.triangulation.seed += 1;
+  std::set<std::string> digests = {MeshDigest(base)};
+  for (const BuildInputs& other : others) digests.insert(MeshDigest(other));
+  EXPECT_EQ(digests.size(), 10u);
+
+  BuildInputs moved = base;
+  moved.placements(0, 0) += 1e-12;
+  EXPECT_EQ(MeshDigest(moved), MeshDigest(base));
+  EXPECT_NE(RevisionDigest(moved), RevisionDigest(base));
+  EXPECT_EQ(RevisionDigest(BuildInputs(base)), RevisionDigest(base));
+}
+
+}  // namespace
+}  // namespace posespace
