@@ -9,7 +9,8 @@
 #include <random>
 #include <string>
 
-#include "tests/support/failure.h"
+#include "tests/support/fails_saying.h"
+#include "tests/support/fails_with.h"
 #include "tests/support/pictures.h"
 
 namespace posespace {
@@ -201,32 +202,32 @@ TEST(DecodeImage, RefusesEveryTruncation) {
 
 TEST(DecodeImage, SaysWhetherTheFileIsForeignCutShortOrDamaged) {
   const Bytes jpeg = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F'};
-  EXPECT_THAT(DecodeImage(jpeg), FailsWith(ErrorCode::kImageUndecodable, "not a PNG"));
-  EXPECT_THAT(DecodeImage({}), FailsWith(ErrorCode::kImageUndecodable, "empty"));
+  EXPECT_THAT(DecodeImage(jpeg), FailsSaying(ErrorCode::kImageUndecodable, "not a PNG"));
+  EXPECT_THAT(DecodeImage({}), FailsSaying(ErrorCode::kImageUndecodable, "empty"));
 
   Bytes bytes = WritePng({PNG_COLOR_TYPE_RGB, 8, false}, 13, 11);
   const std::span<const std::uint8_t> half(bytes.data(), bytes.size() / 2);
-  EXPECT_THAT(DecodeImage(half), FailsWith(ErrorCode::kImageUndecodable, "cut short"));
+  EXPECT_THAT(DecodeImage(half), FailsSaying(ErrorCode::kImageUndecodable, "cut short"));
   bytes[kHeaderEnd + 12] ^= 1;  // in the first bytes of IDAT
-  EXPECT_THAT(DecodeImage(bytes), FailsWith(ErrorCode::kImageUndecodable, "damaged"));
+  EXPECT_THAT(DecodeImage(bytes), FailsSaying(ErrorCode::kImageUndecodable, "damaged"));
 }
 
 TEST(DecodeImage, ChecksTheSizeInTheHeaderBeforeDecoding) {
   EXPECT_THAT(DecodeImage(PngClaiming(100'000, 100'000)),
-              FailsWith(ErrorCode::kImageTooLarge, "100000 x 100000"));
+              FailsSaying(ErrorCode::kImageTooLarge, "100000 x 100000"));
   EXPECT_THAT(DecodeImage(PngClaiming(2'147'483'647, 2'147'483'647)),
-              FailsWith(ErrorCode::kImageTooLarge, "at most 32000000"));
+              FailsSaying(ErrorCode::kImageTooLarge, "at most 32000000"));
   EXPECT_THAT(DecodeImage(PngClaiming(0, 10)), FailsWith(ErrorCode::kImageUndecodable));
   EXPECT_THAT(DecodeImage(PngClaiming(0xffffffff, 10)), FailsWith(ErrorCode::kImageUndecodable));
 
   const Bytes png = WritePng({PNG_COLOR_TYPE_RGBA, 8, false}, 12, 10);
   EXPECT_TRUE(DecodeImage(png, {.max_pixels = 120}));
-  EXPECT_THAT(DecodeImage(png, {.max_pixels = 119}), FailsWith(ErrorCode::kImageTooLarge, "119"));
+  EXPECT_THAT(DecodeImage(png, {.max_pixels = 119}), FailsSaying(ErrorCode::kImageTooLarge, "119"));
 }
 
 TEST(DecodeImage, TakesNoMemoryForPixelsTheFileCannotHold) {
   EXPECT_THAT(DecodeImage(PngClaiming(8000, 4000)),
-              FailsWith(ErrorCode::kImageUndecodable, "cannot hold"));
+              FailsSaying(ErrorCode::kImageUndecodable, "cannot hold"));
 }
 
 TEST(DecodeImage, ReadsAnImageThatCompressesAsWellAsDeflateCan) {

@@ -8,7 +8,8 @@
 #include <random>
 
 #include "geometry/polygon.h"
-#include "tests/support/failure.h"
+#include "tests/support/fails_saying.h"
+#include "tests/support/fails_with.h"
 #include "tests/support/pictures.h"
 
 namespace posespace {
@@ -167,17 +168,17 @@ TEST(TraceOutline, GivesEqualOutputForEqualInput) {
 
 TEST(TraceOutline, FailsWhenNothingIsPainted) {
   EXPECT_THAT(TraceOutline({}), FailsWith(ErrorCode::kOutlineEmpty));
-  EXPECT_THAT(TraceOutline(PictureOf(30, 20)), FailsWith(ErrorCode::kOutlineEmpty, "30 x 20"));
+  EXPECT_THAT(TraceOutline(PictureOf(30, 20)), FailsSaying(ErrorCode::kOutlineEmpty, "30 x 20"));
   EXPECT_THAT(TraceOutline(PictureOf(30, 20, {255, 255, 255, 127})),
-              FailsWith(ErrorCode::kOutlineEmpty, "128"));
+              FailsSaying(ErrorCode::kOutlineEmpty, "128"));
 }
 
 TEST(TraceOutline, FailsBelowSixteenPaintedPixels) {
   EXPECT_THAT(TraceOutline(PictureOf({"#"})),
-              FailsWith(ErrorCode::kOutlineTooSmall, "1 painted pixel "));
+              FailsSaying(ErrorCode::kOutlineTooSmall, "1 painted pixel "));
   Image image = PictureOf(20, 20);
   PaintBox(&image, 5, 5, 5, 3, kBlack);
-  EXPECT_THAT(TraceOutline(image), FailsWith(ErrorCode::kOutlineTooSmall, "at least 16"));
+  EXPECT_THAT(TraceOutline(image), FailsSaying(ErrorCode::kOutlineTooSmall, "at least 16"));
   PaintPixel(&image, 5, 8, kBlack);
   const auto outline = TraceOutline(image);
   ASSERT_TRUE(outline) << outline.error().message;
@@ -187,12 +188,12 @@ TEST(TraceOutline, FailsBelowSixteenPaintedPixels) {
 TEST(TraceOutline, FailsWhenPointsOrOptionsAreBeyondTheirLimits) {
   const Image image = Figure(90, 70);
   EXPECT_THAT(TraceOutline(image, {.max_points = 20}),
-              FailsWith(ErrorCode::kOutlineTooLong, "at most 20"));
+              FailsSaying(ErrorCode::kOutlineTooLong, "at most 20"));
   EXPECT_THAT(TraceOutline(image, {.threshold = 0}),
-              FailsWith(ErrorCode::kInvalidOption, "threshold"));
+              FailsSaying(ErrorCode::kInvalidOption, "threshold"));
   EXPECT_THAT(TraceOutline(image, {.threshold = 256}), FailsWith(ErrorCode::kInvalidOption));
   EXPECT_THAT(TraceOutline(image, {.working_size = 1 << 20}),
-              FailsWith(ErrorCode::kInvalidOption, "working_size"));
+              FailsSaying(ErrorCode::kInvalidOption, "working_size"));
 }
 
 TEST(TraceOutline, KeepsPaintedShadowsBelowTheThresholdOut) {

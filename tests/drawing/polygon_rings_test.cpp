@@ -8,7 +8,8 @@
 
 #include "drawing/outline.h"
 #include "geometry/polygon.h"
-#include "tests/support/failure.h"
+#include "tests/support/fails_saying.h"
+#include "tests/support/fails_with.h"
 #include "tests/support/points.h"
 
 namespace posespace {
@@ -62,8 +63,8 @@ TEST(OutlineFromRings, RemovesRepeatedAndNeedlessPoints) {
 TEST(OutlineFromRings, NamesTheEdgesThatCrossAndWhereAsTheyWereGiven) {
   const Points bow = PointsOf("0 0, 0 0, 10 10, 10 0, 0 10");
   const auto outline = OutlineFromRings(bow, {});
-  ASSERT_THAT(outline, FailsWith(ErrorCode::kOutlineNotSimple,
-                                 "the outline: edge 1 meets edge 3 near (5, 5)"));
+  ASSERT_THAT(outline, FailsSaying(ErrorCode::kOutlineNotSimple,
+                                   "the outline: edge 1 meets edge 3 near (5, 5)"));
   ASSERT_EQ(outline.error().where.size(), 2u);
   EXPECT_EQ(outline.error().where[0].field, "outline[1]");
   EXPECT_EQ(outline.error().where[1].field, "outline[3]");
@@ -73,7 +74,7 @@ TEST(OutlineFromRings, RefusesSpikesAndTouches) {
   EXPECT_THAT(OutlineFromRings(PointsOf("0 0, 10 0, 20 0, 10 0, 10 10"), {}),
               FailsWith(ErrorCode::kOutlineNotSimple));
   EXPECT_THAT(OutlineFromRings(PointsOf("0 0, 10 0, 10 10, 5 0, 0 10"), {}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "(5, 0)"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "(5, 0)"));
 }
 
 TEST(OutlineFromRings, RefusesRingsWithoutArea) {
@@ -92,10 +93,10 @@ TEST(OutlineFromRings, RefusesCoordinatesThatAreNotFiniteOrTooFar) {
     Points ring = PointsOf("0 0, 10 0, 10 10, 0 10");
     ring(2, 1) = bad;
     const auto outline = OutlineFromRings(ring, {});
-    ASSERT_THAT(outline, FailsWith(ErrorCode::kInvalidOption, "point 2"));
+    ASSERT_THAT(outline, FailsSaying(ErrorCode::kInvalidOption, "point 2"));
     EXPECT_EQ(outline.error().where[0].field, "outline[2]");
     const auto as_hole = OutlineFromRings(PointsOf("0 0, 20 0, 20 20, 0 20"), Rings{ring});
-    ASSERT_THAT(as_hole, FailsWith(ErrorCode::kInvalidOption, "hole 0"));
+    ASSERT_THAT(as_hole, FailsSaying(ErrorCode::kInvalidOption, "hole 0"));
     EXPECT_EQ(as_hole.error().where[0].field, "holes[0][2]");
   }
   EXPECT_TRUE(OutlineFromRings(PointsOf("-1e6 -1e6, 1e6 -1e6, 1e6 1e6"), {}));
@@ -105,10 +106,10 @@ TEST(OutlineFromRings, CountsPointsAgainstTheLimit) {
   const Points ring = RegularPolygon(100, 50.0);
   EXPECT_TRUE(OutlineFromRings(ring, {}, {.max_points = 100}));
   EXPECT_THAT(OutlineFromRings(ring, {}, {.max_points = 99}),
-              FailsWith(ErrorCode::kOutlineTooLong, "at most 99"));
+              FailsSaying(ErrorCode::kOutlineTooLong, "at most 99"));
   const Rings holes(40, PointsOf("0 0, 1 0, 1 1"));
   EXPECT_THAT(OutlineFromRings(ring, holes, {.max_points = 119}),
-              FailsWith(ErrorCode::kOutlineTooLong, "holes"));
+              FailsSaying(ErrorCode::kOutlineTooLong, "holes"));
 }
 
 TEST(OutlineFromRings, WantsHolesInsideTheOutlineAndApart) {
@@ -116,15 +117,15 @@ TEST(OutlineFromRings, WantsHolesInsideTheOutlineAndApart) {
   const Points hole = PointsOf("2 2, 6 2, 6 6, 2 6");
   EXPECT_TRUE(OutlineFromRings(square, Rings{hole, PointsOf("7 7, 8 7, 8 8")}));
   EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("8 2, 12 2, 12 6, 8 6")}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "hole 0: edge"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "hole 0: edge"));
   EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("12 2, 16 2, 16 6")}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "outside"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "outside"));
   EXPECT_THAT(OutlineFromRings(square, Rings{hole, PointsOf("3 3, 4 3, 4 4")}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "hole 1 lies inside hole 0"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "hole 1 lies inside hole 0"));
   EXPECT_THAT(OutlineFromRings(square, Rings{hole, PointsOf("5 5, 8 5, 8 8, 5 8")}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "of hole 0 near"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "of hole 0 near"));
   EXPECT_THAT(OutlineFromRings(square, Rings{PointsOf("2 2, 6 6, 6 2, 2 6")}),
-              FailsWith(ErrorCode::kOutlineNotSimple, "hole 0: edge 0 meets edge 2"));
+              FailsSaying(ErrorCode::kOutlineNotSimple, "hole 0: edge 0 meets edge 2"));
 }
 
 double PaintedArea(const Texture& texture) {
