@@ -26,7 +26,7 @@ struct TriangleMaps {
   Eigen::MatrixXd stretches;  // 3 T x N: all xx, then all xy, then all yy
 };
 
-// Triangles that hang together over shared edges, each a part; -1 never occurs in a result.
+// For each triangle the number of its part: triangles that hang together over shared edges.
 std::vector<int> EdgeConnectedParts(const Triangles& triangles);
 
 // Measures all poses.  Rotations are unwrapped breadth first over triangles that share an edge:
