@@ -44,13 +44,13 @@ struct MatchingOptions {
 struct MatchedOutlines {
   std::vector<Points> outlines;    // N of n x 2: row k is the same place on every outline
   std::vector<int> landmark_rows;  // the row of each landmark, in the caller's order
-  // Per drawing, in (0, 1]: how clear its matching is; below 0.5 a person should look at it.  1 when
-  // N = 1.
+  // Per drawing, in (0, 1]: how clear its matching is; below 0.5 a person should look at it.  1
+  // when N = 1.
   std::vector<double> confidence;
 };
 
-// Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at once,
-// each with a field "tuples[L].points['shape']".
+// Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at
+// once, each with a field "tuples[L].points['shape']".
 //
 // Fails     kLandmarkNotFinite, kLandmarkOffOutline, kLandmarksOutOfOrder as MatchBoundaries does.
 Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
@@ -62,16 +62,17 @@ Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
 //
 // Every corner of every outline becomes a row, so each output ring follows its outline exactly;
 // corners of different outlines share a row when they are closer than 0.25 % of the perimeter on
-// all.  Each ring is simple and positively oriented.  Every landmark is a row: in the drawings that it marks, that row is the
-// outline point nearest to the mark.  The result depends on the order of the drawings only in the
-// order of its rows.
+// all of them.  Each ring is simple and positively oriented.  Every landmark is a row: in the
+// drawings that it marks, that row is the outline point nearest to the mark.  The result depends on
+// the order of the drawings only in the order of its rings.
 //
 // Requires  N >= 1 shapes; each landmark has N entries, at least one of them set.
 // Fails     kLandmarkNotFinite, kLandmarkOffOutline (names landmark, drawing, distance and limit),
 //           kLandmarksOutOfOrder (names every contradicting pair of landmarks with two drawings),
 //           kOutlineNotSimple (an outline that passes itself as closely as numbers round),
 //           kCancelled.
-// Cost      O(N^2 M^2) with M = 64 samples to compare all pairs, O(N M^2) with M = 256 to match.
+// Cost      O(N^2 M^3) with M = 64 samples to compare all pairs from every start, O(N M^2) with
+//           M = 256 to match.
 // Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Boundary matching", with a multi-scale elastic
 //           cost and composition along a minimum spanning tree instead of a privileged drawing.
 Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,

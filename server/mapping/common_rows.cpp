@@ -57,6 +57,20 @@ void AppendCorners(int i, const OutlineCurve& curve, const OutlineMap& map,
   }
 }
 
+// Sorted stops -> the same around the outline, so that the seam parts no stops that lie together.
+void BeginAfterWidestGap(std::vector<Stop>& stops) {
+  std::size_t first = 0;
+  double widest = stops.front().common + 1.0 - stops.back().common;
+  for (std::size_t k = 1; k < stops.size(); ++k) {
+    const double gap = stops[k].common - stops[k - 1].common;
+    if (gap <= widest) continue;
+    widest = gap;
+    first = k;
+  }
+  for (std::size_t k = 0; k < first; ++k) stops[k].common += 1.0;
+  std::rotate(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(first), stops.end());
+}
+
 bool CanShare(const Row& row, const Stop& stop, std::span<const OutlineMap> maps) {
   if (row.landmark >= 0 && stop.landmark >= 0) return false;
   for (const auto& [drawing, mark] : stop.own) {
@@ -130,6 +144,7 @@ CommonRows ShareRows(std::span<const OutlineCurve> curves, std::span<const Outli
   }
   std::stable_sort(stops.begin(), stops.end(),
                    [](const Stop& a, const Stop& b) { return a.common < b.common; });
+  BeginAfterWidestGap(stops);
   const std::vector<Row> rows = CollectRows(stops, maps);
 
   CommonRows result;
