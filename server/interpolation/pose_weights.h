@@ -23,9 +23,10 @@ struct PoseWeightsOptions {
 // The plane is tessellated with a near-equilateral lattice (pose_lattice.h) over the placements'
 // bounding box and a margin of half their diameter; the weights minimise the jumps of their
 // gradient over the lattice's edges (a discrete biharmonic energy) and, slightly, the gradient
-// itself. Between lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1
-// everywhere: also across the domain's rim, outside of which each point takes the weights of the
-// closest point of the rim, and at its corners.
+// itself.  Between lattice vertices they are evaluated with Clough-Tocher cubics, so they are C1.
+// Outside the domain each point takes the weights of the closest point of its rim; within 0.2
+// diameters of the rim points are eased towards that, so weights are C1 across the rim and at its
+// corners, too.
 //
 // Weights may be negative and exceed 1 (extrapolation): see shear_limit.h.
 //
@@ -41,9 +42,8 @@ class PoseWeights {
   // Fails     kNoShapes (N = 0), kPlacementNotFinite (also when distances overflow),
   //           kPlacementsCoincide (names both rows; closer than 1e-3 of the diameter),
   //           kInvalidOption (levelling outside [0.01, 100]), kCancelled.
-  // Cost      one sparse factorisation of some 11,000 unknowns at most, and up to some 1,000 more
-  // per
-  //           pose that is close to another: well under a second.
+  // Cost      one sparse factorisation of some 11,000 unknowns at most, and some 500 more per pose
+  //           that is close to another: well under a second.
   static Result<PoseWeights> Fit(const Points& placements, const PoseWeightsOptions& options = {},
                                  Progress* progress = nullptr);
 

@@ -58,8 +58,7 @@ class RigidBlend {
   //
   // Requires  a valid mesh.
   // Fails     kSizeMismatch (turns), kInternal (empty, a vertex without triangle, or a triangle
-  // that
-  //           is degenerate in every pose).
+  //           that is degenerate in every pose).
   static Result<RigidBlend> Prepare(const CompatibleMesh& mesh, std::vector<int> turns = {});
 
   // V x 2 vertices in drawing pixels for N finite weights that sum to one.
