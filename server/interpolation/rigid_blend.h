@@ -54,7 +54,8 @@ class RigidBlend {
  public:
   // `turns` adds whole turns to each pose's rotation (N entries, or none for all zero): each pose's
   // mean rotation relative to the rest shape, weighted with the rest areas, is first brought into
-  // (-pi, pi] (half a turn, but for rounding, is +pi), then 2 pi turns[i] is added.
+  // (-pi, pi] (half a turn, but for rounding, is +pi), then 2 pi turns[i] is added.  kPaper takes
+  // the same whole turns as kRigid.
   //
   // Requires  a valid mesh.
   // Fails     kSizeMismatch (turns), kInternal (empty, a vertex without triangle, or a triangle
