@@ -62,9 +62,9 @@ class BuildJob {
   // True when Cancel() came in time: the job ends, or has ended, as kCancelled.
   bool cancelled() const;
 
-  // Calls `listener` after each change, on the thread that changed it, until Unwatch(token). Called
-  // once at once, with the state as it is, on the caller's thread.  Calls come one at a time, in
-  // order of sequence; reports of progress within one stage come at most every 20 ms.
+  // Calls `listener` after each change, on the thread that changed it, until Unwatch(token). It is
+  // called once at once, with the state as it is, on the caller's thread.  Calls come one at a
+  // time, in order of sequence; reports of progress within one stage come at most every 20 ms.
   //
   // A listener must not block or throw, nor call Watch or Cancel; it may call Unwatch.  Unwatch
   // waits for a call that is running on another thread, so call it with no lock that a listener

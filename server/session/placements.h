@@ -21,8 +21,8 @@ Points DefaultPlacements(int count);
 // Checks the places of drawings, row i that of drawing ids[i], as PoseWeights::Fit would refuse
 // them, but by name and all at once, with fields "placements['walk']".
 //
-// Fails  kSizeMismatch, kPlacementNotFinite, kPlacementsCoincide (closer than 1e-3 of the
-// diameter).
+// Fails  kSizeMismatch, kPlacementNotFinite, kPlacementsCoincide (closer than a thousandth of the
+//        greatest distance between two).
 Result<void> CheckPlacements(std::span<const std::string> ids, const Points& places);
 
 // Checks that exactly the drawings `ids` are placed.

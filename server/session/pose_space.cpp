@@ -22,9 +22,8 @@ constexpr double kMaxWeight = 1e6;
 // How far an explicit sum of weights may be from 1.
 constexpr double kMaxSumError = 1e-3;
 
-// A drawing whose matching is less clear than this should be checked: a score of 1.2 on the scale
-// of MatchedOutlines::confidence.
-constexpr double kLeastConfidence = 1.0 / 2.2;
+// A drawing whose matching is less clear than this should be checked (MatchedOutlines::confidence).
+constexpr double kLeastConfidence = 0.5;
 
 // More Steiner vertices than this mostly come from wrong matches.
 constexpr int kManySteinerVertices = 12;

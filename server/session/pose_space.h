@@ -95,10 +95,9 @@ class PoseSpace {
   // with a margin of a twentieth of it on each side.
   View DefaultView(int width, int height) const;
 
-  const std::string& revision() const;  // RevisionDigest of its inputs
-  const std::string& mesh_digest()
-      const;                         // MeshDigest of its inputs: the same for other placements
-  const Points& placements() const;  // row i the place of drawings()[i]
+  const std::string& revision() const;     // RevisionDigest of its inputs
+  const std::string& mesh_digest() const;  // MeshDigest of its inputs
+  const Points& placements() const;        // row i the place of drawings()[i]
   const CompatibleMesh& mesh() const;
   const std::vector<std::shared_ptr<const Drawing>>& drawings() const;
   const std::vector<int>& turns() const;

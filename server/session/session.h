@@ -64,9 +64,9 @@ class Session {
   // Decodes and traces a drawing and keeps it.  The same source again under the same id is answered
   // as before; another one needs `replace`, and takes the old one's place in the order.  Marks and
   // placement stay with the id; marks that the new drawing does not bear are refused by the next
-  // build. Fails  kShapeExists, kTooManyShapes, kInvalidId, kImageTooLarge (also for all drawings
-  // together),
-  //        and as ReadDrawing (upload.h).
+  // build.
+  // Fails  kShapeExists, kTooManyShapes, kInvalidId, kImageTooLarge (also for all drawings
+  //        together), and as ReadDrawing (upload.h).
   Result<std::shared_ptr<const Drawing>> PutShape(const std::string& shape_id, ShapeSource source,
                                                   bool replace);
   Result<std::shared_ptr<const Drawing>> FindShape(const std::string& shape_id) const;
@@ -77,8 +77,7 @@ class Session {
 
   // Replaces all correspondences after checking them against the outlines: all faults at once.
   // Fails  kTooManyLandmarks, kInvalidOption (a tuple without a mark), kShapeNotFound,
-  // kEtagMismatch,
-  //        and as CheckLandmarks (boundary_matching.h).
+  //        kEtagMismatch, and as CheckLandmarks (boundary_matching.h).
   Result<void> SetCorrespondences(std::vector<Correspondence> tuples, const std::string& etag);
 
   // Replaces all placements; empty returns to the default.  A built session gets a new weight field
@@ -87,9 +86,9 @@ class Session {
   Result<void> SetPlacements(Placements placements, const std::string& etag);
 
   // Starts a build on `pool`, or attaches to the running or finished one of the same inputs.  A
-  // build of other inputs cancels a running one; a failed or cancelled one is tried again. Fails
-  // kNoShapes, kInvalidOption (options; a drawing without a place), and as BuildPool::Submit;
-  //        then a running build goes on.
+  // build of other inputs cancels a running one; a failed or cancelled one is tried again.
+  // Fails  kNoShapes, kInvalidOption (options; a drawing without a place), and as
+  //        BuildPool::Submit; then a running build goes on.
   Result<BuildStatus> StartBuild(const BuildRequest& request, BuildPool& pool);
 
   // The latest build, if any.

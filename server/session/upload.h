@@ -31,8 +31,8 @@ std::string SourceDigest(const ShapeSource& source);
 
 // Decodes and traces an upload.  Pure; call from any thread.
 // Fails  as DecodeImage and TraceOutline or OutlineFromRings do, with the shape's name in the
-// message
-//        and a field such as "shapes['walk'].outline"; kShapeSourceMissing (no bytes, no points).
+//        message and a field such as "shapes['walk'].outline"; kShapeSourceMissing (no bytes, no
+//        points).
 Result<Drawing> ReadDrawing(const std::string& shape_id, const ShapeSource& source,
                             const Limits& limits);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <mutex>
 #include <semaphore>
@@ -280,7 +281,8 @@ TEST_F(SessionBuild, BlendsAndIsEditedWhileItBuilds) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 2; ++i) {
     threads.emplace_back([&] {
-      while (!stop) {
+      // Builds run at low priority, so readers pause to let them.
+      for (; !stop; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
         const auto space = session_.Built();
         ASSERT_THAT(space, Succeeds());
         const auto frame = (*space)->Blend({Point(0.1, 0.2), {}, 0.0});
@@ -292,7 +294,7 @@ TEST_F(SessionBuild, BlendsAndIsEditedWhileItBuilds) {
     });
   }
   threads.emplace_back([&] {
-    while (!stop) {
+    for (; !stop; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
       const SessionView view = session_.View();
       EXPECT_EQ(view.placements.size(), view.shape_ids.size());
       EXPECT_GE(view.build->sequence, 1);
