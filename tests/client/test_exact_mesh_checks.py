@@ -23,7 +23,7 @@ def test_a_flipped_triangle_is_seen(mesh):
     points = mesh.vertices["step"].copy()
     inner = (set(mesh.triangles.ravel()) - set(mesh.boundary[0])).pop()
     points[inner] += 1e4
-    with pytest.raises(AssertionError, match="'step'.*not positive"):
+    with pytest.raises(AssertionError, match=r"'step'.*not positive"):
         assert_valid_in_every_drawing(replace(mesh, vertices={**mesh.vertices, "step": points}))
 
 

@@ -147,7 +147,7 @@ def layout(client):
 
 
 def test_weights_sum_to_one_near_and_far(layout):
-    session, places = layout
+    session, _ = layout
     rng = np.random.default_rng(3)
     points = np.concatenate(
         [rng.uniform(-3, 6, (600, 2)), rng.normal(0, 1e3, (50, 2)), rng.normal(0, 1e9, (50, 2))]

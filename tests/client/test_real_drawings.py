@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from exact_mesh_checks import assert_valid_in_every_drawing
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 SHAPES = Path(os.environ.get("POSESPACE_SHAPES", ROOT.parent / "shared" / "shapes"))
@@ -70,19 +70,29 @@ class Drawing:
     view: tuple[float, float, float, float]
 
 
+def inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points lie inside the ring, by counting crossings to their right."""
+    odd = np.zeros(len(points), dtype=bool)
+    x, y = points.T
+    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        spans = (ay > y) != (by > y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            odd ^= spans & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    return odd
+
+
 def painted_rings(rings: dict) -> Drawing:
-    """The rings in black, a box a little larger than theirs at 512 pixels across."""
-    outer = np.array(rings["outer"], dtype=float)
-    x, y = outer.min(axis=0) - 2
-    width, height = np.ptp(outer, axis=0) + 4
-    fine, scale = 4, 512 / width
-    mask = Image.new("L", (512 * fine, round(height * scale) * fine))
-    ImageDraw.Draw(mask).polygon([tuple(p) for p in (outer - (x, y)) * scale * fine], fill=255)
+    """Black where a pixel's centre is inside, 512 pixels across, a little wider than the ring."""
     assert not rings["holes"], "this group has no holes"
-    alpha = mask.resize((mask.width // fine, mask.height // fine), Image.Resampling.BOX)
-    pixels = np.zeros((alpha.height, alpha.width, 4), np.uint8)
-    pixels[..., 3] = np.asarray(alpha)
-    return Drawing(pixels, (x, y, width, alpha.height / scale))
+    outer = np.array(rings["outer"], dtype=float)
+    left, top = (outer.min(axis=0) - 2).tolist()
+    scale = 512 / (float(np.ptp(outer[:, 0])) + 4)
+    rows = int(np.ceil((float(np.ptp(outer[:, 1])) + 4) * scale))
+    y, x = np.mgrid[:rows, :512] + 0.5
+    centres = np.stack([x.ravel(), y.ravel()], axis=1) / scale + (left, top)
+    pixels = np.zeros((rows, 512, 4), np.uint8)
+    pixels[..., 3] = 255 * inside(outer, centres).reshape(rows, 512)
+    return Drawing(pixels, (left, top, 512 / scale, rows / scale))
 
 
 @pytest.fixture(scope="module", params=GROUPS)
@@ -112,17 +122,6 @@ def test_mesh_is_valid_in_every_drawing(built):
     assert_valid_in_every_drawing(session.mesh())
 
 
-def inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points lie inside the ring, by counting crossings to their right."""
-    odd = np.zeros(len(points), dtype=bool)
-    x, y = points.T
-    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        spans = (ay > y) != (by > y)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            odd ^= spans & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    return odd
-
-
 def test_mesh_covers_every_painted_pixel(built):
     session, drawings, threshold = built
     mesh = session.mesh()
@@ -147,6 +146,7 @@ def test_every_pose_is_reproduced_at_its_own_weights(built):
 
 def test_a_render_at_a_pose_resembles_its_picture(built):
     session, drawings, threshold = built
+    has_colours = GROUPS[session.state().display_name] == "picture"
     placements = session.state().placements
     for name, drawing in drawings.items():
         pixels = drawing.pixels
@@ -156,8 +156,10 @@ def test_a_render_at_a_pose_resembles_its_picture(built):
         painted = pixels[..., 3] >= threshold
         shown = rendered[..., 3] >= threshold
         overlap = (painted & shown).sum() / (painted | shown).sum()
-        difference = np.abs(premultiplied(rendered) - premultiplied(pixels))[painted].mean()
         assert overlap >= 0.98, f"shape '{name}': the silhouettes share {overlap:.3f}"
+        if not has_colours:
+            continue
+        difference = np.abs(premultiplied(rendered) - premultiplied(pixels))[painted].mean()
         assert difference <= 0.02, f"shape '{name}': pixels differ by {difference:.3f} of 1"
 
 
