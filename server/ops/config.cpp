@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ops/config.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -67,7 +70,10 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
 bool IsLocal(const std::string& listen) {
   if (listen.starts_with("unix:")) return true;
   const std::string host = listen.substr(0, listen.rfind(':'));
-  return host == "localhost" || host == "[::1]" || host.starts_with("127.");
+  in_addr address{};
+  const bool numeric = inet_pton(AF_INET, host.c_str(), &address) == 1;
+  const bool loopback = numeric && (ntohl(address.s_addr) >> 24) == IN_LOOPBACKNET;
+  return loopback || host == "localhost" || host == "[::1]";
 }
 
 Result<void> CheckConfig(const Config& config) {

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/convert.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/fails_saying.h"
+#include "tests/support/fails_with.h"
+
+namespace posespace {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::Field;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void SetRing(std::initializer_list<double> coordinates, v1::Ring* ring) {
+  ring->mutable_coordinates()->Assign(coordinates.begin(), coordinates.end());
+}
+
+TEST(ShapeSource, IsRefusedWhenMissing) {
+  EXPECT_THAT(ShapeSourceFromProto({}), FailsWith(ErrorCode::kShapeSourceMissing));
+}
+
+TEST(ShapeSource, KeepsTheBytesAndTheDefaultThreshold) {
+  v1::PutShapeRequest request;
+  request.mutable_image()->set_data(std::string("\x89PN\0G", 5));
+  const auto source = ShapeSourceFromProto(request);
+  ASSERT_TRUE(source);
+  const ImageSource& image = std::get<ImageSource>(*source);
+  EXPECT_THAT(image.data, ElementsAre(0x89, 'P', 'N', 0, 'G'));
+  EXPECT_EQ(image.threshold, 128);
+}
+
+TEST(ShapeSource, TakesThresholdsOfOneTo255) {
+  v1::PutShapeRequest request;
+  for (const int accepted : {1, 255}) {
+    request.mutable_image()->set_threshold(accepted);
+    ASSERT_TRUE(ShapeSourceFromProto(request));
+    EXPECT_EQ(std::get<ImageSource>(*ShapeSourceFromProto(request)).threshold, accepted);
+  }
+  for (const int refused : {0, 256, -1, std::numeric_limits<int>::max()}) {
+    request.mutable_image()->set_threshold(refused);
+    EXPECT_THAT(ShapeSourceFromProto(request),
+                FailsSaying(ErrorCode::kInvalidOption, "image.threshold"));
+  }
+}
+
+TEST(ShapeSource, RefusesAForegroundItDoesNotKnow) {
+  v1::PutShapeRequest request;
+  request.mutable_image()->set_foreground(static_cast<v1::Foreground>(77));
+  EXPECT_THAT(ShapeSourceFromProto(request),
+              FailsSaying(ErrorCode::kInvalidOption, "image.foreground"));
+}
+
+TEST(ShapeSource, ReadsRingsAsRowsOfXAndY) {
+  v1::PutShapeRequest request;
+  SetRing({0, 1, 2, 3, 4, 5}, request.mutable_polygon()->mutable_outer());
+  SetRing({6, 7}, request.mutable_polygon()->add_holes());
+  const auto source = ShapeSourceFromProto(request);
+  ASSERT_TRUE(source);
+  const PolygonSource& polygon = std::get<PolygonSource>(*source);
+  EXPECT_EQ(polygon.outer, (Points(3, 2) << 0, 1, 2, 3, 4, 5).finished());
+  ASSERT_EQ(polygon.holes.size(), 1u);
+  EXPECT_EQ(polygon.holes[0], (Points(1, 2) << 6, 7).finished());
+}
+
+TEST(ShapeSource, RefusesAnOddNumberOfCoordinates) {
+  v1::PutShapeRequest request;
+  SetRing({0, 1, 2, 3, 4, 5}, request.mutable_polygon()->mutable_outer());
+  SetRing({6, 7, 8}, request.mutable_polygon()->add_holes());
+  EXPECT_THAT(ShapeSourceFromProto(request),
+              FailsSaying(ErrorCode::kInvalidOption, "polygon.holes[0].coordinates"));
+}
+
+TEST(ShapeSource, NamesTheCoordinateThatIsNotFinite) {
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    v1::PutShapeRequest request;
+    SetRing({0, 1, 2, bad, 4, 5}, request.mutable_polygon()->mutable_outer());
+    const auto source = ShapeSourceFromProto(request);
+    ASSERT_THAT(source, FailsWith(ErrorCode::kInvalidOption));
+    EXPECT_THAT(source.error().where,
+                ElementsAre(Field(&Violation::field, "polygon.outer.coordinates[3]")));
+  }
+}
+
+TEST(Correspondences, AreReadWhole) {
+  v1::SetCorrespondencesRequest request;
+  auto& points = *request.add_tuples()->mutable_points();
+  points["walk"].set_x(1.5);
+  points["run"].set_y(-2.0);
+  const auto tuples = CorrespondencesFromProto(request);
+  ASSERT_TRUE(tuples);
+  ASSERT_EQ(tuples->size(), 1u);
+  EXPECT_EQ((*tuples)[0].at("walk"), Point(1.5, 0.0));
+  EXPECT_EQ((*tuples)[0].at("run"), Point(0.0, -2.0));
+}
+
+TEST(Correspondences, ReportEveryPointThatIsNotFinite) {
+  v1::SetCorrespondencesRequest request;
+  (*request.add_tuples()->mutable_points())["walk"].set_x(kNan);
+  (*request.add_tuples()->mutable_points())["walk"].set_x(1.0);
+  (*request.add_tuples()->mutable_points())["run"].set_y(kInfinity);
+  const auto tuples = CorrespondencesFromProto(request);
+  ASSERT_THAT(tuples, FailsWith(ErrorCode::kLandmarkNotFinite));
+  EXPECT_THAT(tuples.error().where,
+              ElementsAre(Field(&Violation::field, "tuples[0].points['walk']"),
+                          Field(&Violation::field, "tuples[2].points['run']")));
+}
+
+TEST(Correspondences, RefuseATupleThatMarksNothing) {
+  v1::SetCorrespondencesRequest request;
+  request.add_tuples();
+  EXPECT_THAT(CorrespondencesFromProto(request), FailsSaying(ErrorCode::kInvalidOption, "tuples[0]"));
+}
+
+TEST(Placements, AreReadByShape) {
+  v1::SetPlacementsRequest request;
+  auto* const placement = request.add_placements();
+  placement->set_shape_id("walk");
+  placement->mutable_at()->set_x(3.0);
+  const auto placements = PlacementsFromProto(request);
+  ASSERT_TRUE(placements);
+  EXPECT_EQ(placements->at("walk"), Point(3.0, 0.0));
+}
+
+TEST(Placements, RefuseAMissingPlaceAShapePlacedTwiceAndWhatIsNotFinite) {
+  v1::SetPlacementsRequest request;
+  request.add_placements()->set_shape_id("walk");
+  EXPECT_THAT(PlacementsFromProto(request),
+              FailsSaying(ErrorCode::kInvalidOption, "placements[0].at"));
+  request.mutable_placements(0)->mutable_at();
+  *request.add_placements() = request.placements(0);
+  EXPECT_THAT(PlacementsFromProto(request),
+              FailsSaying(ErrorCode::kInvalidOption, "placements[1].shape_id"));
+  request.mutable_placements(1)->set_shape_id("run");
+  request.mutable_placements(1)->mutable_at()->set_y(kNan);
+  EXPECT_THAT(PlacementsFromProto(request),
+              FailsSaying(ErrorCode::kPlacementNotFinite, "placements[1].at"));
+}
+
+TEST(BuildOptions, AreTheDefaultsWhenAbsent) {
+  const auto request = BuildRequestFromProto({});
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->tolerance, 0.03);
+  EXPECT_EQ(request->target_edge_length, 0.08);
+}
+
+TEST(BuildOptions, AreTakenToTheEndsOfTheirRangesAndNoFarther) {
+  v1::BuildOptions options;
+  for (const double accepted : {0.001, 0.2}) {
+    options.set_tolerance(accepted);
+    ASSERT_TRUE(BuildRequestFromProto(options));
+    EXPECT_EQ(BuildRequestFromProto(options)->tolerance, accepted);
+  }
+  for (const double refused : {0.0, 0.000999, 0.2001, -1.0, kNan, kInfinity}) {
+    options.set_tolerance(refused);
+    EXPECT_THAT(BuildRequestFromProto(options),
+                FailsSaying(ErrorCode::kInvalidOption, "options.tolerance"));
+  }
+  options.clear_tolerance();
+  for (const double refused : {0.0, 0.0199, 1.01, kNan}) {
+    options.set_target_edge_length(refused);
+    EXPECT_THAT(BuildRequestFromProto(options),
+                FailsSaying(ErrorCode::kInvalidOption, "options.target_edge_length"));
+  }
+}
+
+TEST(SessionView, TravelsWhole) {
+  SessionView view;
+  view.id = "tux";
+  view.labels = {{"k", "v"}};
+  view.shape_ids = {"b", "a"};
+  view.correspondences = {{{"a", Point(1, 2)}}};
+  view.placements = {{"a", Point(0, 1)}, {"b", Point(2, 3)}};
+  view.placements_are_default = false;
+  view.etag = "7";
+  view.created = std::chrono::system_clock::time_point(std::chrono::milliseconds(1'500));
+  BuildStatus build;
+  build.id = "one";
+  build.state = BuildState::kFailed;
+  build.sequence = 9;
+  build.error = Error{ErrorCode::kOutlineNotSimple, "edges cross", {{"shapes['a']", "crosses"}}};
+  view.build = build;
+
+  v1::Session session;
+  ToProto(view, &session);
+  EXPECT_EQ(session.id(), "tux");
+  EXPECT_EQ(session.labels().at("k"), "v");
+  EXPECT_THAT(session.shape_ids(), ElementsAre("b", "a"));
+  EXPECT_EQ(session.correspondences(0).points().at("a").y(), 2.0);
+  ASSERT_EQ(session.placements_size(), 2);
+  EXPECT_EQ(session.placements(0).shape_id(), "b");  // in the order of upload
+  EXPECT_EQ(session.placements(0).at().x(), 2.0);
+  EXPECT_FALSE(session.placements_are_default());
+  EXPECT_EQ(session.create_time().seconds(), 1);
+  EXPECT_EQ(session.create_time().nanos(), 500'000'000);
+  EXPECT_EQ(session.build().state(), v1::BUILD_STATE_FAILED);
+  EXPECT_EQ(session.build().sequence(), 9);
+  EXPECT_EQ(session.build().error().reason(), "OUTLINE_SELF_INTERSECTS");
+  EXPECT_THAT(session.build().error().fields(), ElementsAre("shapes['a']"));
+}
+
+}  // namespace
+}  // namespace posespace

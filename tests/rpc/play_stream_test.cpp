@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/play_stream.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/rpc/sample_shapes.h"
+
+
+namespace posespace {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = PlayStream::Clock;
+
+// A registry with one built session, "cell", of two ellipses at (0, 0) and (0, 1).
+class Sessions {
+ public:
+  explicit Sessions(const Limits& limits = {}) : registry_(limits) {
+    session_ = *registry_.Create({"cell", "", {}, ""});
+    Put("wide", EllipseOf(80, 40));
+    Put("tall", EllipseOf(40, 80));
+    EXPECT_TRUE(session_->SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(0, 1)}}, ""));
+    Build();
+  }
+
+  Registry& registry() { return registry_; }
+  Session& session() { return *session_; }
+
+  void Put(const std::string& id, const Points& ring) {
+    EXPECT_TRUE(session_->PutShape(id, PolygonSource{ring, {}, {}}, /*replace=*/true));
+  }
+
+  void Build() {
+    EXPECT_TRUE(session_->StartBuild({}, registry_.build_pool()));
+    while (!session_->LatestBuild()->Status().ended()) std::this_thread::sleep_for(1ms);
+    const auto error = session_->LatestBuild()->Status().error;
+    EXPECT_FALSE(error) << error->message;
+  }
+
+ private:
+  Registry registry_;
+  std::shared_ptr<Session> session_;
+};
+
+// Everything a stream asks for, kept until the test lets it happen.
+class Wire final : public PlayTransport {
+ public:
+  void StartRead(v1::PlayRequest* message) override {
+    EXPECT_EQ(reading, nullptr) << "two reads at once";
+    EXPECT_FALSE(finished);
+    reading = message;
+  }
+  void StartWrite(const v1::PlayResponse* message) override {
+    EXPECT_EQ(writing, nullptr) << "two writes at once";
+    EXPECT_FALSE(finished);
+    writing = message;
+  }
+  void ScheduleWork() override {
+    EXPECT_FALSE(work) << "two threads at once";
+    work = true;
+  }
+  void Finish(Result<void> outcome) override {
+    EXPECT_FALSE(finished) << "finished twice";
+    finished = true;
+    error = outcome ? std::nullopt : std::optional(outcome.error().code);
+  }
+
+  v1::PlayRequest* reading = nullptr;
+  const v1::PlayResponse* writing = nullptr;
+  bool work = false;
+  bool finished = false;
+  std::optional<ErrorCode> error;
+};
+
+class Play : public ::testing::Test {
+ protected:
+  explicit Play(const Limits& limits = {}) : sessions_(limits), stream_(sessions_.registry(), limits, wire_) {
+    stream_.Start();
+  }
+
+  // The client says something.
+  void Say(const v1::PlayRequest& message) {
+    ASSERT_NE(wire_.reading, nullptr) << "the stream does not listen";
+    *std::exchange(wire_.reading, nullptr) = message;
+    stream_.OnRead(true);
+  }
+  void SayAll() {
+    wire_.reading = nullptr;
+    stream_.OnRead(false);
+  }
+  void LetWork() {
+    ASSERT_TRUE(std::exchange(wire_.work, false)) << "there is no work";
+    stream_.Work();
+  }
+  // The client takes one message.
+  v1::PlayResponse Take() {
+    if (wire_.writing == nullptr) {
+      ADD_FAILURE() << "nothing is written";
+      return {};
+    }
+    const v1::PlayResponse message = *std::exchange(wire_.writing, nullptr);
+    stream_.OnWritten(true);
+    return message;
+  }
+  // All that comes of itself: work is done, messages are taken.
+  std::vector<v1::PlayResponse> TakeAll() {
+    std::vector<v1::PlayResponse> messages;
+    while (wire_.work || wire_.writing != nullptr) {
+      if (wire_.work) {
+        LetWork();
+      } else {
+        messages.push_back(Take());
+      }
+    }
+    return messages;
+  }
+
+  static v1::PlayRequest Bind(std::uint32_t slot, const std::string& session = "cell",
+                              const std::string& revision = "") {
+    v1::PlayRequest request;
+    request.mutable_bind()->set_slot(slot);
+    request.mutable_bind()->set_session_id(session);
+    request.mutable_bind()->set_pinned_revision(revision);
+    return request;
+  }
+  static v1::PlayRequest Unbind(std::uint32_t slot) {
+    v1::PlayRequest request;
+    request.mutable_unbind()->set_slot(slot);
+    return request;
+  }
+  static v1::PlayRequest Tick(std::uint64_t frame_id, const std::vector<std::uint32_t>& slots,
+                              double y = 0.5) {
+    v1::PlayRequest request;
+    request.mutable_tick()->set_frame_id(frame_id);
+    for (const std::uint32_t slot : slots) {
+      auto* const item = request.mutable_tick()->add_items();
+      item->set_slot(slot);
+      item->set_tag(static_cast<std::uint32_t>(100 + request.tick().items_size()));
+      item->mutable_query()->mutable_at()->set_y(y);
+    }
+    return request;
+  }
+  // Binds slot 0 and forgets what was said so far.
+  void BindSlot0() {
+    Say(Bind(0));
+    ASSERT_EQ(TakeAll().back().bound().reason(), "");
+  }
+  std::string Revision() { return (*sessions_.session().Built())->revision(); }
+  int Vertices() { return (*sessions_.session().Built())->mesh().num_vertices(); }
+
+  Sessions sessions_;
+  Wire wire_;
+  PlayStream stream_;
+};
+
+TEST_F(Play, BeginsWithTheLimits) {
+  const auto welcome = Take().welcome();
+  EXPECT_EQ(welcome.max_slots(), 64u);
+  EXPECT_EQ(welcome.max_items(), 256u);
+  EXPECT_EQ(welcome.max_in_flight(), 4u);
+}
+
+TEST_F(Play, SaysWhatASlotIsBoundTo) {
+  Say(Bind(63));
+  const auto bound = TakeAll().back().bound();
+  EXPECT_EQ(bound.slot(), 63u);
+  EXPECT_EQ(bound.reason(), "");
+  EXPECT_EQ(bound.revision(), Revision());
+  EXPECT_EQ(bound.vertex_count(), Vertices());
+  EXPECT_THAT(bound.shape_ids(), ::testing::ElementsAre("wide", "tall"));
+}
+
+TEST_F(Play, SaysWhyASlotCannotBeBound) {
+  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, ""}));
+  const std::vector<std::pair<v1::PlayRequest, std::string>> cases = {
+      {Bind(0, "nobody"), "SESSION_NOT_FOUND"},
+      {Bind(0, ""), "INVALID_ID"},
+      {Bind(0, "raw"), "SESSION_NOT_BUILT"},
+      {Bind(0, "cell", "another"), "REVISION_NOT_FOUND"},
+      {Bind(64), "SLOT_LIMIT"},
+      {Bind(std::numeric_limits<std::uint32_t>::max()), "SLOT_LIMIT"}};
+  for (const auto& [request, reason] : cases) {
+    Say(request);
+    const auto bound = TakeAll().back().bound();
+    EXPECT_EQ(bound.reason(), reason);
+    EXPECT_NE(bound.error_message(), "");
+    EXPECT_EQ(bound.slot(), request.bind().slot());
+  }
+  EXPECT_FALSE(wire_.finished);
+}
+
+TEST_F(Play, AnswersEachItemInOrder) {
+  BindSlot0();
+  Say(Tick(7, {0, 0, 0}));
+  const auto result = TakeAll().back().frame_result();
+  EXPECT_EQ(result.frame_id(), 7u);
+  ASSERT_EQ(result.items_size(), 3);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(result.items(k).tag(), 101u + k);
+    EXPECT_EQ(result.items(k).reason(), "");
+    EXPECT_EQ(result.items(k).frame().vertices().size(), 8u * Vertices());
+    EXPECT_EQ(result.items(k).frame().weights_size(), 0);
+  }
+}
+
+TEST_F(Play, AnswersAFrameWithoutItemsByOneWithoutItems) {
+  Say(Tick(1, {}));
+  EXPECT_EQ(TakeAll().back().frame_result().frame_id(), 1u);
+}
+
+TEST_F(Play, ReturnsWeightsWhenAsked) {
+  BindSlot0();
+  auto tick = Tick(1, {0}, 1.0);
+  tick.mutable_tick()->set_with_weights(true);
+  Say(tick);
+  const auto frame = TakeAll().back().frame_result().items(0).frame();
+  ASSERT_EQ(frame.weights_size(), 2);
+  EXPECT_NEAR(frame.weights(1), 1.0, 1e-9);
+  EXPECT_EQ(frame.texture_weights_size(), 2);
+}
+
+TEST_F(Play, KeepsOneAvatarsErrorFromEndingTheStream) {
+  BindSlot0();
+  auto tick = Tick(1, {0, 5, 0, 0, 0});
+  auto& items = *tick.mutable_tick()->mutable_items();
+  items[2].mutable_query()->mutable_at()->set_x(std::numeric_limits<double>::quiet_NaN());
+  items[3].mutable_query()->mutable_weights()->add_values(1.0);
+  items[4].clear_query();
+  Say(tick);
+  const auto result = TakeAll().back().frame_result();
+  ASSERT_EQ(result.items_size(), 5);
+  EXPECT_EQ(result.items(0).reason(), "");
+  EXPECT_EQ(result.items(1).reason(), "SLOT_NOT_BOUND");
+  EXPECT_EQ(result.items(2).reason(), "POSE_NOT_FINITE");
+  EXPECT_EQ(result.items(3).reason(), "WEIGHTS_COUNT_MISMATCH");
+  EXPECT_EQ(result.items(4).reason(), "INVALID_OPTION");
+  for (int k = 1; k < 5; ++k) {
+    EXPECT_FALSE(result.items(k).has_frame());
+    EXPECT_NE(result.items(k).error_message(), "");
+  }
+  EXPECT_FALSE(wire_.finished);
+  Say(Tick(2, {0}));
+  EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "");
+}
+
+TEST_F(Play, ForgetsAnUnboundSlot) {
+  BindSlot0();
+  Say(Unbind(0));
+  Say(Unbind(9));
+  Say(Tick(1, {0}));
+  EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "SLOT_NOT_BOUND");
+}
+
+TEST_F(Play, BindsASlotAnew) {
+  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, ""}));
+  BindSlot0();
+  Say(Bind(0, "raw"));
+  EXPECT_EQ(TakeAll().back().bound().reason(), "SESSION_NOT_BUILT");
+  Say(Tick(1, {0}));
+  EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "SLOT_NOT_BOUND");
+  BindSlot0();
+  Say(Tick(2, {0}));
+  EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "");
+}
+
+TEST_F(Play, SaysBetweenTwoFramesThatARevisionHasChanged) {
+  BindSlot0();
+  Say(Tick(1, {0}));
+  ASSERT_EQ(TakeAll().size(), 1u);
+  const std::string before = Revision();
+  sessions_.Put("tall", EllipseOf(30, 90));
+  sessions_.Build();
+  ASSERT_NE(Revision(), before);
+
+  Say(Tick(2, {0}));
+  const auto messages = TakeAll();
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_EQ(messages[0].revision_changed().revision(), Revision());
+  EXPECT_EQ(messages[0].revision_changed().vertex_count(), Vertices());
+  EXPECT_EQ(messages[0].revision_changed().shape_ids_size(), 2);
+  EXPECT_EQ(messages[1].frame_result().items(0).frame().vertices().size(), 8u * Vertices());
+}
+
+TEST_F(Play, SaysThatARevisionHasChangedWithoutWaitingForAFrame) {
+  BindSlot0();
+  ASSERT_TRUE(sessions_.session().SetPlacements(
+      {{"wide", Point(0, 0)}, {"tall", Point(5, 5)}}, ""));
+  stream_.Beat(Clock::now());
+  EXPECT_EQ(Take().revision_changed().revision(), Revision());
+  stream_.Beat(Clock::now());
+  EXPECT_EQ(wire_.writing, nullptr) << "said twice";
+}
+
+TEST_F(Play, KeepsAPinnedRevision) {
+  const std::string pinned = Revision();
+  Say(Bind(0, "cell", pinned));
+  ASSERT_EQ(TakeAll().back().bound().revision(), pinned);
+  ASSERT_TRUE(sessions_.session().SetPlacements(
+      {{"wide", Point(0, 0)}, {"tall", Point(0, 2)}}, ""));
+  Say(Tick(1, {0}, 1.0));
+  const auto messages = TakeAll();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].frame_result().items(0).reason(), "");
+}
+
+TEST_F(Play, FreesTheSlotOfADeletedSession) {
+  BindSlot0();
+  ASSERT_TRUE(sessions_.registry().Delete("cell", ""));
+  Say(Tick(1, {0}));
+  const auto messages = TakeAll();
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_EQ(messages[0].revision_changed().slot(), 0u);
+  EXPECT_EQ(messages[0].revision_changed().revision(), "");
+  EXPECT_EQ(messages[1].frame_result().items(0).reason(), "SLOT_NOT_BOUND");
+}
+
+TEST_F(Play, ReadsAheadNoFartherThanAllowed) {
+  BindSlot0();
+  for (int k = 0; k < 4; ++k) Say(Tick(k, {0}));
+  EXPECT_EQ(wire_.reading, nullptr);
+  // Answering does not make room, only the client's taking the answer does.
+  while (wire_.work) LetWork();
+  EXPECT_EQ(wire_.reading, nullptr);
+  EXPECT_EQ(Take().frame_result().frame_id(), 0u);
+  EXPECT_NE(wire_.reading, nullptr);
+  Say(Tick(4, {0}));
+  EXPECT_EQ(wire_.reading, nullptr);
+  const auto rest = TakeAll();
+  ASSERT_EQ(rest.size(), 4u);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(rest[k].frame_result().frame_id(), 1u + k);
+}
+
+TEST_F(Play, EndsWellWhenTheClientHasSaidAllAndGotItsAnswers) {
+  BindSlot0();
+  Say(Tick(1, {0}));
+  Say(Tick(2, {0}));
+  SayAll();
+  EXPECT_FALSE(wire_.finished);
+  EXPECT_EQ(TakeAll().size(), 2u);
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_FALSE(wire_.error);
+}
+
+TEST_F(Play, EndsByAMessageThatMakesNoSenseAfterItsEarlierAnswers) {
+  BindSlot0();
+  Say(Tick(1, {0}));
+  Say({});
+  const auto messages = TakeAll();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].frame_result().frame_id(), 1u);
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_EQ(wire_.error, ErrorCode::kProtocolBreach);
+}
+
+TEST_F(Play, TakesAsManyItemsAsItSaysAndEndsByMore) {
+  BindSlot0();
+  Say(Tick(1, std::vector<std::uint32_t>(256, 9)));
+  EXPECT_EQ(TakeAll().back().frame_result().items_size(), 256);
+  Say(Tick(2, std::vector<std::uint32_t>(257, 9)));
+  TakeAll();
+  EXPECT_EQ(wire_.error, ErrorCode::kProtocolBreach);
+}
+
+TEST_F(Play, EndsOnceWhenCancelledWhileItWorksWritesAndReads) {
+  BindSlot0();
+  Say(Tick(1, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  ASSERT_TRUE(wire_.work);
+  stream_.Drain(1s);
+  ASSERT_NE(wire_.writing, nullptr);
+  stream_.OnCancelled();
+  EXPECT_FALSE(wire_.finished) << "a thread is still at work";
+  LetWork();
+  EXPECT_FALSE(wire_.finished) << "a message is still being written";
+  wire_.writing = nullptr;
+  stream_.OnWritten(false);
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_EQ(wire_.error, ErrorCode::kCancelled);
+  stream_.OnRead(false);
+  stream_.OnCancelled();
+  stream_.Beat(Clock::now() + 1h);
+}
+
+TEST_F(Play, EndsWhenTheClientVanishesDuringAWrite) {
+  wire_.writing = nullptr;
+  stream_.OnWritten(false);
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_EQ(wire_.error, ErrorCode::kCancelled);
+}
+
+TEST_F(Play, GivesASignOfLifeAfterASilenceOnly) {
+  BindSlot0();
+  const auto now = Clock::now();
+  stream_.Beat(now + 5s);
+  EXPECT_EQ(wire_.writing, nullptr);
+  stream_.Beat(now + 11s);
+  ASSERT_NE(wire_.writing, nullptr);
+  EXPECT_TRUE(Take().has_heartbeat());
+}
+
+TEST_F(Play, GivesNoSignsOfLifeToAReaderThatDoesNotTakeThem) {
+  const auto now = Clock::now();
+  for (int k = 1; k < 100; ++k) stream_.Beat(now + k * 11s);
+  EXPECT_TRUE(Take().has_welcome());
+  EXPECT_EQ(wire_.writing, nullptr);
+}
+
+TEST_F(Play, AnswersWhileItDrainsAndEndsWhenTheClientEnds) {
+  BindSlot0();
+  const auto now = Clock::now();
+  stream_.Drain(1500ms, now);
+  stream_.Drain(1500ms, now);
+  Say(Tick(1, {0}));
+  const auto messages = TakeAll();
+  ASSERT_EQ(messages.size(), 2u) << "said once";
+  EXPECT_EQ(messages[0].draining().stop_sending_in().seconds(), 1);
+  EXPECT_EQ(messages[0].draining().stop_sending_in().nanos(), 500'000'000);
+  EXPECT_EQ(messages[1].frame_result().items(0).reason(), "");
+  stream_.Beat(now + 1s);
+  EXPECT_FALSE(wire_.finished);
+  SayAll();
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_FALSE(wire_.error);
+}
+
+TEST_F(Play, CutsOffAClientThatOutstaysTheDraining) {
+  BindSlot0();
+  const auto now = Clock::now();
+  stream_.Drain(1s, now);
+  TakeAll();
+  stream_.Beat(now + 1s);
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_EQ(wire_.error, ErrorCode::kDraining);
+}
+
+// Answers no more than the queue holds, however much was read.
+class PlayFarAhead : public Play {
+ protected:
+  static Limits ManyInFlight() {
+    Limits limits;
+    limits.max_in_flight = 1'000;
+    return limits;
+  }
+  PlayFarAhead() : Play(ManyInFlight()) {}
+};
+
+TEST_F(PlayFarAhead, StopsAnsweringAReaderThatDoesNotTake) {
+  BindSlot0();
+  const std::size_t frame_bytes = 256u * 8u * Vertices();
+  const int enough = static_cast<int>(PlayStream::kQueuedBytes / frame_bytes) + 10;
+  const std::vector<std::uint32_t> slots(256, 0);
+  for (int k = 0; k < enough; ++k) Say(Tick(k, slots));
+  int answered = 0;
+  for (; wire_.work; ++answered) LetWork();
+  EXPECT_LE((answered - 1) * frame_bytes, PlayStream::kQueuedBytes);
+  EXPECT_LT(answered, enough);
+  EXPECT_EQ(TakeAll().size(), static_cast<std::size_t>(enough)) << "what was held back comes later";
+}
+
+}  // namespace
+}  // namespace posespace
