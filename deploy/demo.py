@@ -64,6 +64,11 @@ def show_set(client: posespace.Client, name: str, plan: dict[str, Any], out: Pat
     for shape_id, png in pngs.items():
         for warning in session.put_shape(shape_id, image=png).warnings:
             print(f"  {shape_id}: {warning}")
+    marks = [
+        {id: tuple(at) for id, at in places.items()} for places in plan.get("correspondences", [])
+    ]
+    if marks:
+        session.set_correspondences(marks)
     session.set_placements(placements)
     report = session.build(on_progress=show_progress)
     if sys.stdout.isatty():
@@ -113,7 +118,7 @@ def show_set(client: posespace.Client, name: str, plan: dict[str, Any], out: Pat
         ],
         "along the path": [
             picture(session.render(at=tuple(at), size=(CELL, CELL)))
-            for at in path[:: max(1, len(path) // len(ids))][: len(ids)]
+            for at in path[FRAMES_A_LEG // 2 :: FRAMES_A_LEG]
         ],
     }
     save(

@@ -64,14 +64,14 @@ def hue(index: int, count: int) -> NDArray[np.float64]:
 
 
 def weight_field(weights: NDArray[np.float64], size: int) -> Image.Image:
-    """Each point of pose space in the mix of its poses' colours; lines at quarters of a weight.
+    """Each point of pose space in the mix of its poses' colours; a line where a weight is a half.
 
     weights: (size * size, N), rows of the picture from the top.
     """
     count = weights.shape[1]
     colours = np.stack([hue(i, count) for i in range(count)])
     mix = np.clip(np.clip(weights, 0.0, 1.0) @ colours, 0.0, 1.0).reshape(size, size, 3)
-    bands = np.floor(weights.reshape(size, size, count) * 4.0)
+    bands = weights.reshape(size, size, count) > 0.5
     steps = (np.diff(bands, axis=0, append=bands[-1:]) != 0) | (
         np.diff(bands, axis=1, append=bands[:, -1:]) != 0
     )

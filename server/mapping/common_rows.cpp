@@ -13,7 +13,7 @@ constexpr double kLeastGap = 1e-9;         // turns between rows; mapped rows cl
 
 // A place that must become a row: a corner of one outline, or a landmark with its marks.
 struct Stop {
-  double common;                          // in [0, 1]
+  double common;                          // position in the common parameter
   int landmark;                           // or -1
   std::vector<std::pair<int, Mark>> own;  // drawings that have exactly this place, ascending
 };
