@@ -24,6 +24,7 @@ constexpr double kDescent = 1.2;
 constexpr double kLongest = 1.4;     // targets, in the last two rounds
 constexpr double kShortest = 0.5;    // targets
 constexpr double kFineEnough = 2.0;  // times kLongest, where angles forbid more
+constexpr double kRounding = 1e-9;   // of an angle, when the middle of a side is rounded
 constexpr int kSweeps = 4;           // of smoothing between flips
 constexpr int kFinalRounds = 12;     // of flips and smoothing, at most
 
@@ -53,7 +54,8 @@ CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable, doubl
 // splits, as in a square of two triangles, it starts again from quarters, which keep every angle.
 CompatibleMesh RefineKeepingAngles(CompatibleMesh mesh, const ImprovementOptions& options,
                                    Progress* progress) {
-  const double given = MinAngle(mesh), sharpest = SharpestOf(mesh);
+  const double given = (1.0 - kRounding) * MinAngle(mesh);
+  const double sharpest = (1.0 + 0.5 * kRounding) * SharpestOf(mesh);
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   for (;;) {
     CompatibleMesh improved = RefineByLength(mesh, sharpest, sharpest, options, progress);
@@ -72,7 +74,7 @@ CompatibleMesh RefineKeepingAngles(CompatibleMesh mesh, const ImprovementOptions
 Result<CompatibleMesh> ImproveMesh(CompatibleMesh mesh, const ImprovementOptions& options,
                                    Progress* progress) {
   // Free trade between angles makes the best mesh, but may end below a good mesh's smallest angle.
-  const double given = MinAngle(mesh);
+  const double given = (1.0 - kRounding) * MinAngle(mesh);
   const double tradable = Cotangent(5.0);
   const double sharpest = 2.0 * std::max(tradable, SharpestOf(mesh));
   CompatibleMesh improved = RefineByLength(mesh, tradable, sharpest, options, progress);

@@ -17,8 +17,9 @@ struct ImprovementOptions {
 //
 // Vertices move (smoothing), edges flip, long edges split, short interior edges collapse.  Every
 // triangle stays positive in every pose at every step, by an exact predicate; the smallest angle of
-// the mesh never falls.  Boundary vertices and landmarks stay where they are; a split boundary edge
-// gets a vertex on itself.  Equal input gives equal output.
+// the mesh never falls, but for the rounding of split points (1e-9 of it).  Boundary vertices and
+// landmarks stay where they are; a split boundary edge gets a vertex on itself.  Equal input gives
+// equal output.
 //
 // Requires  a valid mesh (FindDefect(mesh) is empty).
 // Fails     kCancelled.
