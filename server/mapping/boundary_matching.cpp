@@ -19,7 +19,10 @@ namespace posespace {
 namespace {
 
 constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have been compared
-constexpr int kCycleSamples = 64;     // at which direct and composed maps are compared
+// Marks this far apart in two drawings, in drawing sizes, show that one is turned or bent so much
+// that where a place lies no longer says which it is.
+constexpr double kMovedFar = 1.0;
+constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
 
 std::vector<OutlineCurve> CurvesOf(std::span<const MatchingShape> shapes) {
   std::vector<OutlineCurve> curves;
@@ -99,6 +102,10 @@ class GroupMatching {
         Report(progress_, kCoarseShare * 2.0 * done / (n_ * (n_ - 1.0)));
         const std::vector<Anchor> anchors = MarkedAnchors(i, j);
         PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
+        if (!anchors.empty() &&
+            AnchorDisplacement(curves_[i], curves_[j], anchors) > kMovedFar * kMovedFar) {
+          weights.position = 0.0;
+        }
         CoarseMatch match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
         if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours()) {
           PairWeights coloured = weights;
