@@ -2,6 +2,7 @@
 #include "mapping/compatible_triangulation.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -16,6 +17,9 @@
 
 namespace posespace {
 namespace {
+
+// Decimation takes most vertices out of an overlay: one this much larger than the limit is tried.
+constexpr std::int64_t kMaxDecimation = 4;
 
 std::string Name(std::size_t drawing) { return "drawing " + std::to_string(drawing); }
 
@@ -91,12 +95,21 @@ Result<Triangulation> OverlayAndDecimate(std::span<const Points> outlines,
   const int n = static_cast<int>(outlines[0].rows());
   Triangulation result;
   result.used_overlay = true;
-  result.mesh = TRY(TriangulateByOverlay(outlines, options.max_vertices, options.seed, progress));
+  const std::int64_t max_overlay = kMaxDecimation * options.max_vertices;
+  result.mesh = TRY(TriangulateByOverlay(outlines, max_overlay, options.seed, progress));
   result.overlay_vertices = result.mesh.num_vertices() - n;
   Report(progress, 0.6);
   EditableMesh editable(result.mesh);
   Decimate(editable, progress);
   result.mesh = editable.Finish();
+  if (result.mesh.num_vertices() > options.max_vertices) {
+    return Error{ErrorCode::kMeshTooLarge,
+                 "the outlines have so little in common that a mesh of all " +
+                     std::to_string(outlines.size()) + " takes " +
+                     std::to_string(result.mesh.num_vertices()) + " vertices; the limit is " +
+                     std::to_string(options.max_vertices),
+                 {}};
+  }
   result.steiner_vertices = result.mesh.num_vertices() - n;
   return result;
 }

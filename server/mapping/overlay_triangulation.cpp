@@ -86,8 +86,9 @@ Result<Points> Embed(const Points& outline, std::span<const Chord> all_chords,
 
 }  // namespace
 
-Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines, int max_vertices,
-                                            std::uint64_t seed, Progress* progress) {
+Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines,
+                                            std::int64_t max_vertices, std::uint64_t seed,
+                                            Progress* progress) {
   const int n = static_cast<int>(outlines[0].rows());
   const Error cancelled{ErrorCode::kCancelled, "triangulation was cancelled", {}};
 
@@ -102,7 +103,7 @@ Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines, in
   const std::int64_t vertices = n + CountCrossings(chords);
   if (vertices > max_vertices) {
     return Error{ErrorCode::kMeshTooLarge,
-                 "the outlines have so little in common that a mesh of all " +
+                 "the outlines have so little in common that an overlay of all " +
                      std::to_string(outlines.size()) + " takes " + std::to_string(vertices) +
                      " vertices; the limit is " + std::to_string(max_vertices),
                  {}};

@@ -29,8 +29,9 @@ namespace posespace {
 //           that no vertices fit between their doubles).
 // Cost      O(N K^3), and O(X log X) for X <= C(N, 2) (K - 3)^2 crossings.
 // Follows   Aronov, Seidel, Souvaine 1993, for N polygons in one convex polygon.
-Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines, int max_vertices,
-                                            std::uint64_t seed, Progress* progress);
+Result<CompatibleMesh> TriangulateByOverlay(std::span<const Points> outlines,
+                                            std::int64_t max_vertices, std::uint64_t seed,
+                                            Progress* progress);
 
 }  // namespace posespace
 

@@ -158,13 +158,18 @@ TEST(TriangulateCompatibly, NamesTheDrawingAndEdgesOfAnOutlineThatIsNotSimple) {
 }
 
 TEST(TriangulateCompatibly, RefusesAMeshOfMoreVerticesThanAllowed) {
-  const auto outlines = DrawOutlines(OutlineFamilies()[1], 2, 4, 30);
+  const auto outlines = DrawOutlines(OutlineFamilies()[0], 2, 4, 40);
+  const auto enough = TriangulateCompatibly(outlines, {});
+  ASSERT_THAT(enough, Succeeds());
   TriangulationOptions options;
-  options.max_vertices = 40;
-  EXPECT_THAT(TriangulateCompatibly(outlines, {}, options),
-              FailsSaying(ErrorCode::kMeshTooLarge, "the limit is 40"));
-  options.max_vertices = 29;
-  EXPECT_THAT(TriangulateCompatibly(outlines, {}, options), FailsWith(ErrorCode::kMeshTooLarge));
+  options.max_vertices = enough->mesh.num_vertices();
+  ASSERT_GT(enough->overlay_vertices, options.max_vertices);
+  EXPECT_THAT(TriangulateCompatibly(outlines, {}, options), Succeeds());
+  for (const int limit : {options.max_vertices - 1, 40, 39}) {
+    options.max_vertices = limit;
+    EXPECT_THAT(TriangulateCompatibly(outlines, {}, options),
+                FailsSaying(ErrorCode::kMeshTooLarge, "limit is"));
+  }
 }
 
 TEST(TriangulateCompatibly, StopsWhenCancelled) {
