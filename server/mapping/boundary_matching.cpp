@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "geometry/polygon.h"
@@ -22,6 +23,7 @@ constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have be
 // Marks this far apart in two drawings, in drawing sizes, show that one is turned or bent so much
 // that where a place lies no longer says which it is.
 constexpr double kMovedFar = 1.0;
+constexpr double kUpright = std::numbers::pi / 4.0;  // marks that turn farther end uprightness
 constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
 
 std::vector<OutlineCurve> CurvesOf(std::span<const MatchingShape> shapes) {
@@ -89,6 +91,24 @@ class GroupMatching {
     return anchors;
   }
 
+  // True when the anchors, two at least, lie turned against each other on the two drawings, so that
+  // these cannot both be upright.
+  bool AreTurned(int i, int j, const std::vector<Anchor>& anchors) const {
+    if (anchors.size() < 2) return false;
+    const auto count = static_cast<Eigen::Index>(anchors.size());
+    Points on_i(count, 2), on_j(count, 2);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      on_i.row(k) = curves_[i].At(anchors[k].on_a).transpose();
+      on_j.row(k) = curves_[j].At(anchors[k].on_b).transpose();
+    }
+    on_i.rowwise() -= on_i.colwise().mean().eval();
+    on_j.rowwise() -= on_j.colwise().mean().eval();
+    // The angle of the least-squares rotation.
+    const double cosine = on_i.cwiseProduct(on_j).sum();
+    const double sine = on_i.col(0).dot(on_j.col(1)) - on_i.col(1).dot(on_j.col(0));
+    return std::abs(std::atan2(sine, cosine)) > kUpright;
+  }
+
   bool ComparePairs() {
     costs_ = Eigen::MatrixXd::Zero(n_, n_);
     // Marks say which way round a drawing is: without any, each may be the wrong way.
@@ -102,6 +122,7 @@ class GroupMatching {
         Report(progress_, kCoarseShare * 2.0 * done / (n_ * (n_ - 1.0)));
         const std::vector<Anchor> anchors = MarkedAnchors(i, j);
         PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
+        if (AreTurned(i, j, anchors)) weights.position = 0.0;
         if (!anchors.empty() &&
             AnchorDisplacement(curves_[i], curves_[j], anchors) > kMovedFar * kMovedFar) {
           weights.position = 0.0;

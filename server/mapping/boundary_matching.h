@@ -26,10 +26,11 @@ struct Landmark {
 };
 
 struct MatchingOptions {
-  // Weights of |position difference|^2 (in drawing sizes, from the centroids) and of |colour
-  // difference|^2 in the matching cost, and of ln(slope)^2 against uneven stretching.  Position
-  // says that drawings are upright; at weight 0 they may be turned.
-  double position_weight = 0.1;
+  // Weights of |position difference|^2 (from the centroids, in spreads of the drawings: the root of
+  // the area of a disc whose area is spread as widely), of |colour difference|^2, and of
+  // ln(slope)^2 against uneven stretching.  Position says that drawings are upright; it is left out
+  // between drawings whose common landmarks lie turned by more than 45 degrees.
+  double position_weight = 0.15;
   double colour_weight = 0.3;
   double stretch_weight = 0.05;
   // Colour is used only between drawings whose mean colour difference along the map found with it

@@ -9,10 +9,14 @@ namespace {
 
 // A score of 1 in each kind of evidence, and the score from which a person should look: first
 // choices from fifty groups of real drawings.
-constexpr double kDoubtfulCost = 0.06;
+constexpr double kDoubtfulCost = 0.07;
 constexpr double kDoubtfulCycle = 0.05;
 constexpr double kDoubtfulGain = 0.06;
 constexpr double kDoubtfulScore = 1.2;
+
+// Added to the cost of each pair before costs are compared: among drawings that hardly differ a
+// mirrored match may be cheaper by chance.
+constexpr double kUnremarkableCost = 0.01;
 
 double FlippedCost(const Eigen::MatrixXd& costs, const Eigen::MatrixXd& mirrored_costs,
                    const std::vector<bool>& flips) {
@@ -81,7 +85,8 @@ std::vector<double> ConfidenceOf(const MatchingEvidence& evidence) {
   if (evidence.mirrored_costs.size() > 0) {
     const std::vector<bool> flips = CheapestFlips(evidence.costs, evidence.mirrored_costs);
     const double least = FlippedCost(evidence.costs, evidence.mirrored_costs, flips);
-    const double gain = 0.5 * evidence.costs.sum() / least;
+    const double unremarkable = kUnremarkableCost * 0.5 * static_cast<double>(n * (n - 1));
+    const double gain = (0.5 * evidence.costs.sum() + unremarkable) / (least + unremarkable);
     for (Eigen::Index i = 0; i < n; ++i) {
       if (flips[i]) scores[i] = std::max(scores[i], (gain - 1.0) / kDoubtfulGain);
     }

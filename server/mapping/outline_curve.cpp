@@ -13,6 +13,20 @@ namespace posespace {
 namespace {
 
 constexpr std::array kWindows = {1.0 / 64, 1.0 / 32, 1.0 / 16, 1.0 / 8};  // turns
+// The spread of a ring's area: the radius of gyration about the centroid, times sqrt(2 pi), which
+// makes it the square root of the area for a disc and more for anything else.  Unlike that root it
+// is alike for a thin letter and a bold one.
+double SpreadOf(const Points& ring, const Point& centroid) {
+  double moment = 0.0;
+  for (Eigen::Index k = 0; k < ring.rows(); ++k) {
+    const Point p = ring.row(k).transpose() - centroid;
+    const Point q = ring.row((k + 1) % ring.rows()).transpose() - centroid;
+    const double cross = p.x() * q.y() - p.y() * q.x();
+    moment += cross * (p.squaredNorm() + p.dot(q) + q.squaredNorm()) / 12.0;
+  }
+  return std::sqrt(2.0 * std::numbers::pi * moment / SignedArea(ring));
+}
+
 constexpr double kCornerReach = 1e-6;  // turns within which a nearest point is the corner itself
 
 }  // namespace
@@ -22,7 +36,8 @@ OutlineCurve::OutlineCurve(const Points& outline, const Eigen::MatrixXd& colours
       colours_(colours.rows() == outline.rows() ? colours : Eigen::MatrixXd()),
       perimeter_(Perimeter(outline)),
       size_(std::sqrt(SignedArea(outline))),
-      centroid_(AreaCentroid(outline)) {
+      centroid_(AreaCentroid(outline)),
+      spread_(SpreadOf(outline, centroid_)) {
   positions_.reserve(outline.rows());
   double length = 0.0;
   for (Eigen::Index k = 0; k < outline.rows(); ++k) {
@@ -80,7 +95,7 @@ Eigen::MatrixXd OutlineCurve::Features(const std::vector<double>& positions,
       features(k, 2 * w) = share * turn;
       features(k, 2 * w + 1) = share * chord;
     }
-    features.row(k).tail<2>() = std::sqrt(position_weight) * (here - centroid_) / size_;
+    features.row(k).tail<2>() = std::sqrt(position_weight) * (here - centroid_) / spread_;
   }
   return features;
 }

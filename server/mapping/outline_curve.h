@@ -37,7 +37,8 @@ class OutlineCurve {
   // What the outline looks like at each position, one row each, made so that squared distances
   // between rows of two outlines say how unlike the places are: columns 0-7 the turn and the chord
   // over windows of 1/64 to 1/8 turn either side (the same at every scale, place and rotation),
-  // columns 8-9 the place relative to the centroid in drawing sizes, times sqrt(position_weight).
+  // columns 8-9 the place relative to the centroid in spreads of the drawing, times
+  // sqrt(position_weight).
   Eigen::MatrixXd Features(const std::vector<double>& positions, double position_weight) const;
 
   // The colour inside the outline at each position, one row each, RGB.
@@ -60,6 +61,7 @@ class OutlineCurve {
   double perimeter_;
   double size_;
   Point centroid_;
+  double spread_;  // what positions are measured in, drawing pixels
 };
 
 }  // namespace posespace
