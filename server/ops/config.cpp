@@ -56,8 +56,7 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
   AddLimit(app, running, "--max-streams", limits.max_streams, "open streams");
   AddLimit(app, running, "--max-stream-slots", limits.max_stream_slots, "sessions of one stream",
            65'536);
-  AddLimit(app, running, "--max-stream-items", limits.max_stream_items,
-           "items of one Play frame");
+  AddLimit(app, running, "--max-stream-items", limits.max_stream_items, "items of one Play frame");
   AddLimit(app, running, "--max-in-flight", limits.max_in_flight,
            "Play frames of one stream read ahead of being answered", 1'024);
   AddLimit(app, running, "--concurrent-builds", limits.concurrent_builds, "builds at once", 256);
@@ -84,10 +83,9 @@ Result<void> CheckConfig(const Config& config) {
   if (!unix_socket) {
     const auto colon = config.listen.rfind(':');
     const std::string port = colon == std::string::npos ? "" : config.listen.substr(colon + 1);
-    const bool digits = !port.empty() && port.size() <= 5 &&
-                        std::all_of(port.begin(), port.end(), [](char c) {
-                          return c >= '0' && c <= '9';
-                        });
+    const bool digits =
+        !port.empty() && port.size() <= 5 &&
+        std::all_of(port.begin(), port.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (!digits || std::stoi(port) > 65'535 || colon == 0) {
       return refuse("--listen '" + config.listen + "' is neither ADDR:PORT nor unix:PATH");
     }

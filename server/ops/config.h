@@ -10,13 +10,14 @@
 
 namespace posespace {
 
-// What posespaced was told, by flags or by the environment: --max-sessions is POSESPACED_MAX_SESSIONS.
+// What posespaced was told, by flags or by the environment: --max-sessions is
+// POSESPACED_MAX_SESSIONS.
 struct Config {
   std::string listen = "127.0.0.1:7433";  // ADDR:PORT, port 0 for any; or unix:PATH
   std::string port_file;                  // where the port is written once the service answers
   std::string store = "memory";
   std::string log_level = "info";
-  bool insecure = false;                  // allow plain text beyond this machine
+  bool insecure = false;                        // allow plain text beyond this machine
   std::chrono::milliseconds drain_grace{5000};  // how long open streams may take to end
   Limits limits;
 };

@@ -5,12 +5,15 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace posespace {
 
 void SetUpLogging(const std::string& level) {
-  auto logger = std::make_shared<spdlog::logger>(
-      "posespaced", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  // gRPC would write lines in a form of its own; whoever wants them sets this before.
+  setenv("GRPC_VERBOSITY", "NONE", /*overwrite=*/0);
+  auto logger = std::make_shared<spdlog::logger>("posespaced",
+                                                 std::make_shared<spdlog::sinks::stderr_sink_mt>());
   logger->set_pattern("time=%Y-%m-%dT%H:%M:%S.%e%z level=%l %v");
   logger->set_level(spdlog::level::from_str(level));
   logger->flush_on(spdlog::level::info);

@@ -23,7 +23,8 @@ Result<void> WritePortFile(const std::string& path, int port) {
   std::error_code ignored;
   std::filesystem::remove(draft, ignored);
   return Error{ErrorCode::kInvalidOption,
-               "cannot write --port-file '" + path + "': " + failure.message(), {}};
+               "cannot write --port-file '" + path + "': " + failure.message(),
+               {}};
 }
 
 }  // namespace posespace

@@ -8,8 +8,8 @@
 
 namespace posespace {
 
-// Writes the port as a line of its own into `path`, whole or not at all: a reader that polls for the
-// file never sees half a number.  Fails with kInvalidOption.
+// Writes the port as a line of its own into `path`, whole or not at all: a reader that polls for
+// the file never sees half a number.  Fails with kInvalidOption.
 Result<void> WritePortFile(const std::string& path, int port);
 
 }  // namespace posespace

@@ -2,9 +2,8 @@
 #ifndef POSESPACE_OPS_TERMINATION_H_
 #define POSESPACE_OPS_TERMINATION_H_
 
-#include <csignal>
-
 #include <chrono>
+#include <csignal>
 
 namespace posespace {
 

@@ -20,8 +20,8 @@ Result<void> BuildWatch::Begin(const Registry& registry, const v1::WatchBuildReq
   const auto session = TRY(registry.Find(request.session_id()));
   auto job = session->LatestBuild();
   if (!job) {
-    return Error{ErrorCode::kBuildNotFound,
-                 "session '" + session->id() + "' has had no build yet", {}};
+    return Error{
+        ErrorCode::kBuildNotFound, "session '" + session->id() + "' has had no build yet", {}};
   }
   TRY(streams_.Add(this));
   // A number beyond the build's own is not of this session, which may have been made anew.

@@ -20,8 +20,7 @@ namespace posespace {
 // is slower than the changes.
 class BuildWatch final : public StreamWriter<v1::WatchBuildResponse>, private LiveStream {
  public:
-  BuildWatch(const Registry& registry, LiveStreams& streams,
-             const v1::WatchBuildRequest& request);
+  BuildWatch(const Registry& registry, LiveStreams& streams, const v1::WatchBuildRequest& request);
 
  private:
   Result<void> Begin(const Registry& registry, const v1::WatchBuildRequest& request);

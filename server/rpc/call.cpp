@@ -9,8 +9,7 @@
 namespace posespace {
 
 grpc::Status Call::End(Result<void> outcome) const {
-  const std::chrono::duration<double, std::milli> spent =
-      std::chrono::steady_clock::now() - start_;
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
   if (outcome) {
     spdlog::debug("event=call method={} code=0 ms={:.3f}", method_, spent.count());
     return grpc::Status::OK;

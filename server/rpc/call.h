@@ -16,9 +16,9 @@
 
 namespace posespace {
 
-// One call from its beginning to its end: a copyable value.  The only place that turns outcomes into
-// statuses and writes the call log (method, code, reason, duration; refusals at info, the rest at
-// debug).
+// One call from its beginning to its end: a copyable value.  The only place that turns outcomes
+// into statuses and writes the call log (method, code, reason, duration; refusals at info, the rest
+// at debug).
 class Call {
  public:
   explicit Call(std::string_view method) : method_(method) {}  // a literal, such as "Blend"

@@ -12,9 +12,9 @@
 
 namespace posespace {
 
-// Threads for work that is too long for a gRPC callback thread; such a thread serves every stream, so
-// nothing may hold it up.  First come, first served.  Thread-safe.
-// Destruction finishes what was posted: each job owes somebody an answer.
+// Threads for work that is too long for a gRPC callback thread; such a thread serves every stream,
+// so nothing may hold it up.  First come, first served.  Thread-safe. Destruction finishes what was
+// posted: each job owes somebody an answer.
 class ComputePool {
  public:
   using Job = std::function<void()>;

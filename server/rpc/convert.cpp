@@ -12,7 +12,9 @@ namespace {
 
 constexpr std::size_t kTextBytes = 1'024;  // of one warning or message
 
-bool IsFinite(const v1::Point& point) { return std::isfinite(point.x()) && std::isfinite(point.y()); }
+bool IsFinite(const v1::Point& point) {
+  return std::isfinite(point.x()) && std::isfinite(point.y());
+}
 
 Error Refusal(ErrorCode code, std::string field, std::string description) {
   return Error{code, field + " " + description, {{field, description}}};
@@ -103,11 +105,16 @@ void ToProto(std::chrono::system_clock::time_point time, google::protobuf::Times
 
 v1::BuildState ToProto(BuildState state) {
   switch (state) {
-    case BuildState::kQueued: return v1::BUILD_STATE_QUEUED;
-    case BuildState::kRunning: return v1::BUILD_STATE_RUNNING;
-    case BuildState::kSucceeded: return v1::BUILD_STATE_SUCCEEDED;
-    case BuildState::kFailed: return v1::BUILD_STATE_FAILED;
-    case BuildState::kCancelled: return v1::BUILD_STATE_CANCELLED;
+    case BuildState::kQueued:
+      return v1::BUILD_STATE_QUEUED;
+    case BuildState::kRunning:
+      return v1::BUILD_STATE_RUNNING;
+    case BuildState::kSucceeded:
+      return v1::BUILD_STATE_SUCCEEDED;
+    case BuildState::kFailed:
+      return v1::BUILD_STATE_FAILED;
+    case BuildState::kCancelled:
+      return v1::BUILD_STATE_CANCELLED;
   }
   return v1::BUILD_STATE_UNSPECIFIED;
 }
@@ -123,7 +130,8 @@ Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
     case v1::PutShapeRequest::SOURCE_NOT_SET:
       break;
   }
-  return Refusal(ErrorCode::kShapeSourceMissing, "source", "is missing: give an image or a polygon");
+  return Refusal(ErrorCode::kShapeSourceMissing, "source",
+                 "is missing: give an image or a polygon");
 }
 
 Result<std::vector<Correspondence>> CorrespondencesFromProto(
@@ -266,8 +274,8 @@ void ToProto(const PoseSpace& pose_space, v1::BuildReport* report) {
 void ToProto(const PoseSpace& pose_space, v1::Mesh* mesh) {
   const CompatibleMesh& compatible = pose_space.mesh();
   mesh->set_revision(pose_space.revision());
-  mesh->mutable_triangles()->Assign(
-      compatible.triangles.data(), compatible.triangles.data() + compatible.triangles.size());
+  mesh->mutable_triangles()->Assign(compatible.triangles.data(),
+                                    compatible.triangles.data() + compatible.triangles.size());
   for (const std::vector<int>& loop : compatible.boundary) {
     mesh->add_boundary()->mutable_vertices()->Assign(loop.begin(), loop.end());
   }

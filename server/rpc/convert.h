@@ -17,7 +17,8 @@
 
 namespace posespace {
 
-// Fails  kShapeSourceMissing, kInvalidOption (threshold, foreground, odd or non-finite coordinates).
+// Fails  kShapeSourceMissing, kInvalidOption (threshold, foreground, odd or non-finite
+// coordinates).
 Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request);
 
 // Fails  kLandmarkNotFinite, kInvalidOption (a tuple without points); all faults at once.

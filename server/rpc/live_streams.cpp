@@ -10,8 +10,8 @@ Result<void> LiveStreams::Add(LiveStream* stream) {
   const std::scoped_lock lock(mutex_);
   if (draining_) return Error{ErrorCode::kDraining, "the service is ending", {}};
   if (CountLocked() >= limit_) {
-    return Error{ErrorCode::kStreamLimit,
-                 "all " + std::to_string(limit_) + " streams are in use", {}};
+    return Error{
+        ErrorCode::kStreamLimit, "all " + std::to_string(limit_) + " streams are in use", {}};
   }
   std::min_element(quarters_.begin(), quarters_.end(), [](const auto& a, const auto& b) {
     return a.size() < b.size();

@@ -68,7 +68,8 @@ Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) const
   if (bind.slot() >= static_cast<std::uint32_t>(limits_.max_stream_slots)) {
     return Error{ErrorCode::kSlotLimit,
                  "slot " + std::to_string(bind.slot()) + " is not below " +
-                     std::to_string(limits_.max_stream_slots), {}};
+                     std::to_string(limits_.max_stream_slots),
+                 {}};
   }
   Slot slot;
   slot.session = TRY(registry_.Find(bind.session_id()));
@@ -102,7 +103,8 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Send& send
     return Error{ErrorCode::kProtocolBreach,
                  "frame " + std::to_string(tick.frame_id()) + " has " +
                      std::to_string(tick.items_size()) + " items; at most " +
-                     std::to_string(limits_.max_stream_items) + " are taken", {}};
+                     std::to_string(limits_.max_stream_items) + " are taken",
+                 {}};
   }
   v1::PlayResponse response;
   v1::PlayResponse::FrameResult* const result = response.mutable_frame_result();
@@ -122,8 +124,8 @@ void PlaySlots::Blend(const v1::PlayRequest::Item& item, bool with_weights,
   const auto slot = slots_.find(item.slot());
   auto frame = Guarded([&]() -> Result<Frame> {
     if (slot == slots_.end()) {
-      return Error{ErrorCode::kSlotNotBound,
-                   "slot " + std::to_string(item.slot()) + " has no session", {}};
+      return Error{
+          ErrorCode::kSlotNotBound, "slot " + std::to_string(item.slot()) + " has no session", {}};
     }
     return BlendQuery(*slot->second.pose_space, item.query(), "query", /*weights_only=*/false);
   });

@@ -14,8 +14,8 @@
 namespace posespace {
 
 // Which sessions a Play stream has bound to its slots, and what it answers to each message.  It
-// knows no gRPC; what is waiting, in flight or ending is play_stream.h.  One per stream; one call at a
-// time.
+// knows no gRPC; what is waiting, in flight or ending is play_stream.h.  One per stream; one call
+// at a time.
 //
 // A slot keeps its pose space until the session has a newer one: results of one message are of one
 // revision, and RevisionChanged comes between two messages.
@@ -26,8 +26,8 @@ class PlaySlots {
 
   PlaySlots(const Registry& registry, const Limits& limits);
 
-  // Answers one message.  What is wrong with a slot or an item is in the answer; kProtocolBreach ends
-  // the stream.
+  // Answers one message.  What is wrong with a slot or an item is in the answer; kProtocolBreach
+  // ends the stream.
   Result<void> Answer(const v1::PlayRequest& request, const Send& send);
 
   // Moves every slot to its session's newest revision and says which have changed.

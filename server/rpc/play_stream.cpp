@@ -112,8 +112,8 @@ void PlayStream::Drain(std::chrono::milliseconds stop_sending_in, Clock::time_po
     v1::PlayResponse draining;
     auto* const duration = draining.mutable_draining()->mutable_stop_sending_in();
     duration->set_seconds(seconds.count());
-    duration->set_nanos(static_cast<std::int32_t>(
-        std::chrono::nanoseconds(stop_sending_in - seconds).count()));
+    duration->set_nanos(
+        static_cast<std::int32_t>(std::chrono::nanoseconds(stop_sending_in - seconds).count()));
     Queue(std::move(draining));
   }
   const Next next = Advance(/*may_work_here=*/false);
@@ -128,8 +128,8 @@ void PlayStream::Queue(v1::PlayResponse message) {
   outgoing_.push_back({std::move(message), bytes});
 }
 
-// The first outcome counts.  Messages that nobody works on yet are dropped, and once the client is gone
-// so are answers, except one that is being written.
+// The first outcome counts.  Messages that nobody works on yet are dropped, and once the client is
+// gone so are answers, except one that is being written.
 void PlayStream::End(Result<void> outcome) {
   if (finished_) return;
   if (!outcome_) outcome_ = std::move(outcome);
@@ -165,10 +165,14 @@ PlayStream::Next PlayStream::Advance(bool may_work_here) {
 
 void PlayStream::Do(Next next) {
   switch (next) {
-    case Next::kWait: return;
-    case Next::kWorkHere: return Work();
-    case Next::kScheduleWork: return transport_.ScheduleWork();
-    case Next::kFinish: return transport_.Finish(outcome_.value_or(Result<void>()));
+    case Next::kWait:
+      return;
+    case Next::kWorkHere:
+      return Work();
+    case Next::kScheduleWork:
+      return transport_.ScheduleWork();
+    case Next::kFinish:
+      return transport_.Finish(outcome_.value_or(Result<void>()));
   }
 }
 

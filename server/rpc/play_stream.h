@@ -91,7 +91,7 @@ class PlayStream {
   bool writing_ = false;
   bool working_ = false;
   bool all_said_ = false;
-  bool gone_ = false;      // nothing can be written any more
+  bool gone_ = false;  // nothing can be written any more
   bool finished_ = false;
   std::optional<Result<void>> outcome_;  // set: no further message is answered
   Clock::time_point last_said_ = Clock::now();

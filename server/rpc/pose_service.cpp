@@ -43,7 +43,8 @@ grpc::ServerUnaryReactor* PoseService::GetTexture(grpc::CallbackServerContext* c
     });
     if (drawing == drawings.end()) {
       return Error{ErrorCode::kShapeNotFound,
-                   "shape '" + request->shape_id() + "' is not in the built pose space", {}};
+                   "shape '" + request->shape_id() + "' is not in the built pose space",
+                   {}};
     }
     const std::vector<std::uint8_t> png = EncodePng((*drawing)->texture.image);
     response->mutable_png()->assign(png.begin(), png.end());
@@ -71,8 +72,8 @@ grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* contex
     TRY(CheckRevision(*pose_space, request->revision()));
     TRY(CheckQueryCount(request->queries_size(), registry_.limits().max_queries));
     for (int k = 0; k < request->queries_size(); ++k) {
-      const Frame frame = TRY(BlendQuery(*pose_space, request->queries(k), QueryField(k),
-                                         request->weights_only()));
+      const Frame frame =
+          TRY(BlendQuery(*pose_space, request->queries(k), QueryField(k), request->weights_only()));
       ToProto(frame, /*with_weights=*/true, response->add_frames());
     }
     response->set_revision(pose_space->revision());

@@ -9,8 +9,8 @@
 
 namespace posespace {
 
-// Run-time calls; what each does is said in pose_service.proto.  Blends run on `blend_pool` unless they
-// are short, pictures and whole meshes on `bulk_pool`, so that frames never wait for pictures.
+// Run-time calls; what each does is said in pose_service.proto.  Blends run on `blend_pool` unless
+// they are short, pictures and whole meshes on `bulk_pool`, so that frames never wait for pictures.
 class PoseService final : public v1::PoseService::CallbackService {
  public:
   PoseService(Registry& registry, LiveStreams& streams, ComputePool& blend_pool,

@@ -14,9 +14,9 @@ namespace posespace {
 
 // Four times a second: calls `beat`, and keeps gRPC awake.
 //
-// gRPC's callback threads fall asleep for 100 ms at a time when a second passes without an event, so
-// that messages a little more than a second apart would wait for up to 100 ms.  A small
-// call from the server to itself is such an event.
+// gRPC's callback threads fall asleep for 100 ms at a time when a second passes without an event,
+// so that messages a little more than a second apart would wait for up to 100 ms.  A small call
+// from the server to itself is such an event.
 class Pulse {
  public:
   using Beat = std::function<void(std::chrono::steady_clock::time_point now)>;

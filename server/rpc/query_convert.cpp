@@ -19,9 +19,15 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
   BlendOptions blend;
   switch (options.method()) {
     case v1::BLEND_METHOD_UNSPECIFIED:
-    case v1::BLEND_METHOD_RIGID: blend.method = BlendMethod::kRigid; break;
-    case v1::BLEND_METHOD_LINEAR: blend.method = BlendMethod::kLinear; break;
-    case v1::BLEND_METHOD_PAPER: blend.method = BlendMethod::kPaper; break;
+    case v1::BLEND_METHOD_RIGID:
+      blend.method = BlendMethod::kRigid;
+      break;
+    case v1::BLEND_METHOD_LINEAR:
+      blend.method = BlendMethod::kLinear;
+      break;
+    case v1::BLEND_METHOD_PAPER:
+      blend.method = BlendMethod::kPaper;
+      break;
     default:
       return Refusal(ErrorCode::kInvalidOption, "options.method",
                      "is " + std::to_string(options.method()) + ", which is not known here");
@@ -31,9 +37,15 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
       blend.shear_limit =
           blend.method == BlendMethod::kPaper ? ShearLimit::kHermite : ShearLimit::kBand;
       break;
-    case v1::SHEAR_LIMIT_BAND: blend.shear_limit = ShearLimit::kBand; break;
-    case v1::SHEAR_LIMIT_HERMITE: blend.shear_limit = ShearLimit::kHermite; break;
-    case v1::SHEAR_LIMIT_OFF: blend.shear_limit = ShearLimit::kOff; break;
+    case v1::SHEAR_LIMIT_BAND:
+      blend.shear_limit = ShearLimit::kBand;
+      break;
+    case v1::SHEAR_LIMIT_HERMITE:
+      blend.shear_limit = ShearLimit::kHermite;
+      break;
+    case v1::SHEAR_LIMIT_OFF:
+      blend.shear_limit = ShearLimit::kOff;
+      break;
     default:
       return Refusal(ErrorCode::kInvalidOption, "options.shear_limit",
                      "is " + std::to_string(options.shear_limit()) + ", which is not known here");
@@ -81,15 +93,16 @@ Result<Query> QueryFromProto(const v1::Query& query) {
 Result<void> CheckQueryCount(int count, int most) {
   if (count == 0) return Refusal(ErrorCode::kInvalidOption, "queries", "is empty");
   if (count <= most) return {};
-  return Refusal(ErrorCode::kTooManyQueries, "queries",
-                 "has " + std::to_string(count) + " entries; at most " + std::to_string(most) +
-                     " are taken");
+  return Refusal(
+      ErrorCode::kTooManyQueries, "queries",
+      "has " + std::to_string(count) + " entries; at most " + std::to_string(most) + " are taken");
 }
 
 Result<void> CheckRevision(const PoseSpace& pose_space, const std::string& revision) {
   if (revision.empty() || revision == pose_space.revision()) return {};
   return Error{ErrorCode::kRevisionNotFound,
-               "revision '" + revision + "' is not current; " + pose_space.revision() + " is", {}};
+               "revision '" + revision + "' is not current; " + pose_space.revision() + " is",
+               {}};
 }
 
 std::string QueryField(int index) { return "queries[" + std::to_string(index) + "]"; }
@@ -97,8 +110,8 @@ std::string QueryField(int index) { return "queries[" + std::to_string(index) + 
 Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
                          const std::string& field, bool weights_only) {
   auto parsed = QueryFromProto(query);
-  auto frame = parsed ? pose_space.Blend(*parsed, weights_only)
-                      : Result<Frame>(std::move(parsed).error());
+  auto frame =
+      parsed ? pose_space.Blend(*parsed, weights_only) : Result<Frame>(std::move(parsed).error());
   if (frame) return frame;
 
   Error error = std::move(frame).error();

@@ -27,7 +27,8 @@ Result<void> CheckRevision(const PoseSpace& pose_space, const std::string& revis
 // The path of a request's query: "queries[3]".
 std::string QueryField(int index);
 
-// The blend of one query; `field` is its path, such as "queries[3]", and begins each field of an error.
+// The blend of one query; `field` is its path, such as "queries[3]", and begins each field of an
+// error.
 Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
                          const std::string& field, bool weights_only);
 

@@ -14,8 +14,8 @@
 
 namespace posespace {
 
-// The answer to one Render: pictures in the order of the queries, drawn on a pool one after another, at
-// most two ahead of the reader.
+// The answer to one Render: pictures in the order of the queries, drawn on a pool one after
+// another, at most two ahead of the reader.
 class RenderStream final : public StreamWriter<v1::RenderResponse>, private LiveStream {
  public:
   RenderStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,

@@ -58,8 +58,8 @@ Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const L
   service->server_ = builder.BuildAndStart();
   if (!service->server_) {
     return Error{ErrorCode::kInvalidOption,
-                 "cannot listen on " + listen +
-                     ": it is in use, or not an address of this machine", {}};
+                 "cannot listen on " + listen + ": it is in use, or not an address of this machine",
+                 {}};
   }
 
   const bool unix_socket = listen.starts_with("unix:");

@@ -24,8 +24,8 @@ namespace posespace {
 // end, Shutdown.
 class Server {
  public:
-  // `listen` is ADDR:PORT, port 0 for any, or unix:PATH.  Fails with kInvalidOption when nothing can
-  // listen there.
+  // `listen` is ADDR:PORT, port 0 for any, or unix:PATH.  Fails with kInvalidOption when nothing
+  // can listen there.
   static Result<std::unique_ptr<Server>> Start(const std::string& listen, const Limits& limits);
 
   ~Server();

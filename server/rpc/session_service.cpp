@@ -27,7 +27,8 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
   return Reply(context, "CreateSession", [&]() -> Result<void> {
-    const auto session = TRY(registry_.Create({request->session_id(), request->display_name(),
+    const auto session = TRY(registry_.Create({request->session_id(),
+                                               request->display_name(),
                                                {request->labels().begin(), request->labels().end()},
                                                request->request_id()}));
     ToProto(session->View(), response->mutable_session());

@@ -9,8 +9,8 @@
 
 namespace posespace {
 
-// Authoring calls; what each does is said in session_service.proto.  Each handler translates, calls,
-// translates; those that decode, trace, check or copy much do so on `pool`.
+// Authoring calls; what each does is said in session_service.proto.  Each handler translates,
+// calls, translates; those that decode, trace, check or copy much do so on `pool`.
 class SessionService final : public v1::SessionService::CallbackService {
  public:
   SessionService(Registry& registry, LiveStreams& streams, ComputePool& pool)

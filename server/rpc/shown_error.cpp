@@ -55,8 +55,8 @@ Error Shown(Error error) {
   if (error.code != ErrorCode::kInternal) return error;
   const std::string id = RandomId();
   spdlog::error("event=internal_error id={} message={}", id, LogValue(error.message));
-  return Error{ErrorCode::kInternal, "internal error " + id + "; the service's log has the cause",
-               {}};
+  return Error{
+      ErrorCode::kInternal, "internal error " + id + "; the service's log has the cause", {}};
 }
 
 }  // namespace posespace

@@ -12,8 +12,8 @@
 
 namespace posespace {
 
-// An error that may be shown to a caller.  All are as they are, except kInternal: what went wrong is
-// logged under a random id, and the caller gets the id alone.
+// An error that may be shown to a caller.  All are as they are, except kInternal: what went wrong
+// is logged under a random id, and the caller gets the id alone.
 Error Shown(Error error);
 
 // At most `most` bytes of text, cut between characters, without bytes that are not UTF-8: proto

@@ -15,12 +15,12 @@
 
 namespace posespace {
 
-// The server's side of a call that answers with a stream, with gRPC's rules kept for the subclass: one
-// write at a time, exactly one Finish, nothing after it, and no end while somebody still works on
-// the call.  Thread-safe.  Deletes itself when the call is done.
+// The server's side of a call that answers with a stream, with gRPC's rules kept for the subclass:
+// one write at a time, exactly one Finish, nothing after it, and no end while somebody still works
+// on the call.  Thread-safe.  Deletes itself when the call is done.
 //
-// A thread that works on the call holds it (Hold, Release), also when the caller goes away meanwhile.
-// The call begins held, so that a subclass can be set up; it calls Release when it is.
+// A thread that works on the call holds it (Hold, Release), also when the caller goes away
+// meanwhile. The call begins held, so that a subclass can be set up; it calls Release when it is.
 template <typename Response>
 class StreamWriter : public grpc::ServerWriteReactor<Response> {
  public:

@@ -115,7 +115,8 @@ TEST(Correspondences, ReportEveryPointThatIsNotFinite) {
 TEST(Correspondences, RefuseATupleThatMarksNothing) {
   v1::SetCorrespondencesRequest request;
   request.add_tuples();
-  EXPECT_THAT(CorrespondencesFromProto(request), FailsSaying(ErrorCode::kInvalidOption, "tuples[0]"));
+  EXPECT_THAT(CorrespondencesFromProto(request),
+              FailsSaying(ErrorCode::kInvalidOption, "tuples[0]"));
 }
 
 TEST(Placements, AreReadByShape) {

@@ -7,48 +7,16 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "tests/rpc/sample_shapes.h"
-
+#include "tests/rpc/built_session.h"
 
 namespace posespace {
 namespace {
 
 using namespace std::chrono_literals;
 using Clock = PlayStream::Clock;
-
-// A registry with one built session, "cell", of two ellipses at (0, 0) and (0, 1).
-class Sessions {
- public:
-  explicit Sessions(const Limits& limits = {}) : registry_(limits) {
-    session_ = *registry_.Create({"cell", "", {}, ""});
-    Put("wide", EllipseOf(80, 40));
-    Put("tall", EllipseOf(40, 80));
-    EXPECT_TRUE(session_->SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(0, 1)}}, ""));
-    Build();
-  }
-
-  Registry& registry() { return registry_; }
-  Session& session() { return *session_; }
-
-  void Put(const std::string& id, const Points& ring) {
-    EXPECT_TRUE(session_->PutShape(id, PolygonSource{ring, {}, {}}, /*replace=*/true));
-  }
-
-  void Build() {
-    EXPECT_TRUE(session_->StartBuild({}, registry_.build_pool()));
-    while (!session_->LatestBuild()->Status().ended()) std::this_thread::sleep_for(1ms);
-    const auto error = session_->LatestBuild()->Status().error;
-    EXPECT_FALSE(error) << error->message;
-  }
-
- private:
-  Registry registry_;
-  std::shared_ptr<Session> session_;
-};
 
 // Everything a stream asks for, kept until the test lets it happen.
 class Wire final : public PlayTransport {
@@ -82,7 +50,8 @@ class Wire final : public PlayTransport {
 
 class Play : public ::testing::Test {
  protected:
-  explicit Play(const Limits& limits = {}) : sessions_(limits), stream_(sessions_.registry(), limits, wire_) {
+  explicit Play(const Limits& limits = {})
+      : sessions_(limits), stream_(sessions_.registry(), limits, wire_) {
     stream_.Start();
   }
 
@@ -156,7 +125,7 @@ class Play : public ::testing::Test {
   std::string Revision() { return (*sessions_.session().Built())->revision(); }
   int Vertices() { return (*sessions_.session().Built())->mesh().num_vertices(); }
 
-  Sessions sessions_;
+  BuiltSession sessions_;
   Wire wire_;
   PlayStream stream_;
 };
@@ -291,8 +260,8 @@ TEST_F(Play, SaysBetweenTwoFramesThatARevisionHasChanged) {
 
 TEST_F(Play, SaysThatARevisionHasChangedWithoutWaitingForAFrame) {
   BindSlot0();
-  ASSERT_TRUE(sessions_.session().SetPlacements(
-      {{"wide", Point(0, 0)}, {"tall", Point(5, 5)}}, ""));
+  ASSERT_TRUE(
+      sessions_.session().SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(5, 5)}}, ""));
   stream_.Beat(Clock::now());
   EXPECT_EQ(Take().revision_changed().revision(), Revision());
   stream_.Beat(Clock::now());
@@ -303,8 +272,8 @@ TEST_F(Play, KeepsAPinnedRevision) {
   const std::string pinned = Revision();
   Say(Bind(0, "cell", pinned));
   ASSERT_EQ(TakeAll().back().bound().revision(), pinned);
-  ASSERT_TRUE(sessions_.session().SetPlacements(
-      {{"wide", Point(0, 0)}, {"tall", Point(0, 2)}}, ""));
+  ASSERT_TRUE(
+      sessions_.session().SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(0, 2)}}, ""));
   Say(Tick(1, {0}, 1.0));
   const auto messages = TakeAll();
   ASSERT_EQ(messages.size(), 1u);

@@ -7,8 +7,8 @@
 namespace posespace {
 namespace {
 
-using ::testing::ElementsAre;
 using grpc::StatusCode;
+using ::testing::ElementsAre;
 
 class PoseServiceTest : public ServiceTest {
  protected:
@@ -82,8 +82,8 @@ TEST_F(PoseServiceTest, GivesTexturesAsPng) {
   request.set_shape_id("tall");
   v1::GetTextureResponse response;
   ASSERT_THAT(client_.Call(&PoseStub::GetTexture, request, &response), Succeeds());
-  const auto image = DecodeImage({reinterpret_cast<const std::uint8_t*>(response.png().data()),
-                                  response.png().size()});
+  const auto image = DecodeImage(
+      {reinterpret_cast<const std::uint8_t*>(response.png().data()), response.png().size()});
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width, 200);
   EXPECT_EQ(image->at(100, 100)[2], 255) << "blue";

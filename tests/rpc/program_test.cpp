@@ -189,8 +189,8 @@ TEST(Program, SaysThatAPortIsTaken) {
 }
 
 TEST(Program, WritesItsPortWhenItAnswers) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("posespace-port-" + std::to_string(getpid()));
+  const auto path =
+      std::filesystem::temp_directory_path() / ("posespace-port-" + std::to_string(getpid()));
   Program program({"--listen", "127.0.0.1:0", "--port-file", path.string()});
   const std::string address = program.Address();
   std::ifstream file(path);
@@ -219,8 +219,7 @@ TEST(Program, SurvivesGarbageOnItsPort) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     ASSERT_EQ(connect(connection, reinterpret_cast<sockaddr*>(&to), sizeof(to)), 0);
     // The other side may have closed already.
-    [[maybe_unused]] const auto sent =
-        send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    [[maybe_unused]] const auto sent = send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     close(connection);
   }
   EXPECT_TRUE(ListSessions(address).ok());
@@ -301,7 +300,8 @@ TEST(Program, EndsDuringABuild) {
 }
 
 TEST(Config, KnowsWhichAddressesStayOnThisMachine) {
-  for (const std::string local : {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1", "unix:x"}) {
+  for (const std::string local :
+       {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1", "unix:x"}) {
     EXPECT_TRUE(IsLocal(local)) << local;
   }
   for (const std::string wide : {"0.0.0.0:1", "[::]:1", "10.0.0.1:1", "*:1", "127.example.org:1"}) {

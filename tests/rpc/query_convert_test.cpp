@@ -119,8 +119,7 @@ TEST(BlendQuery, NamesTheQueryInEveryError) {
 }
 
 TEST(BlendQuery, GivesWeightsAloneWhenAsked) {
-  const auto frame =
-      BlendQuery(*TwoEllipses(), At(0, 1), "queries[0]", /*weights_only=*/true);
+  const auto frame = BlendQuery(*TwoEllipses(), At(0, 1), "queries[0]", /*weights_only=*/true);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->vertices.rows(), 0);
   EXPECT_NEAR(frame->weights(1), 1.0, 1e-9);

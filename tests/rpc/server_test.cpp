@@ -125,14 +125,24 @@ TEST_F(ServerTest, ShutsDownWithStreamsOpenAndBuildsRunning) {
   watcher->Finish();
 }
 
+TEST_F(ServerTest, TakesMetadataOfAFewKibibytesAndNoMore) {
+  v1::ListSessionsResponse response;
+  for (const auto& [bytes, code] :
+       {std::pair(4'000, StatusCode::OK), std::pair(20'000, StatusCode::RESOURCE_EXHAUSTED)}) {
+    const auto context = Client::Context();
+    context->AddMetadata("note", std::string(static_cast<std::size_t>(bytes), 'x'));
+    EXPECT_EQ(client_.sessions->ListSessions(context.get(), {}, &response).error_code(), code);
+  }
+}
+
 TEST_F(ServerTest, DoesNotShareItsPort) {
   EXPECT_THAT(Server::Start(server_->address(), {}),
               FailsSaying(ErrorCode::kInvalidOption, server_->address()));
 }
 
 TEST(Server, ListensOnAUnixSocket) {
-  const auto directory = std::filesystem::temp_directory_path() /
-                         ("posespace-" + std::to_string(getpid()));
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("posespace-" + std::to_string(getpid()));
   std::filesystem::create_directories(directory);
   {
     const auto server = Server::Start("unix:" + (directory / "socket").string(), {});

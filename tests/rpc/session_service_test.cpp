@@ -6,10 +6,10 @@
 namespace posespace {
 namespace {
 
+using grpc::StatusCode;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using grpc::StatusCode;
 
 class SessionServiceTest : public ServiceTest {};
 
@@ -146,8 +146,8 @@ TEST_F(SessionServiceTest, RefusesDrawingsThatCannotBeUsed) {
               Refuses(StatusCode::INVALID_ARGUMENT, "SHAPE_SOURCE_MISSING"));
   EXPECT_THAT(client_.Call(&SessionStub::PutShape, PutImage("tux", "walk", "GIF89a"), &response),
               Refuses(StatusCode::INVALID_ARGUMENT, "IMAGE_UNDECODABLE"));
-  const auto clear = client_.Call(
-      &SessionStub::PutShape, PutImage("tux", "walk", PngOf(80, 40, kClear)), &response);
+  const auto clear = client_.Call(&SessionStub::PutShape,
+                                  PutImage("tux", "walk", PngOf(80, 40, kClear)), &response);
   EXPECT_THAT(clear, Refuses(StatusCode::INVALID_ARGUMENT, "OUTLINE_EMPTY"));
   EXPECT_THAT(clear.error_message(), HasSubstr("walk"));
   v1::PutShapeRequest bow_tie;
@@ -197,8 +197,7 @@ TEST_F(SessionServiceTest, KeepsCorrespondencesAndNamesEveryOneAtFault) {
   }
   const auto far = client_.Call(&SessionStub::SetCorrespondences, request, &response);
   EXPECT_THAT(far, Refuses(StatusCode::INVALID_ARGUMENT, "LANDMARK_OFF_OUTLINE"));
-  EXPECT_THAT(FieldsOf(far),
-              ElementsAre("tuples[1].points['wide']", "tuples[2].points['wide']"));
+  EXPECT_THAT(FieldsOf(far), ElementsAre("tuples[1].points['wide']", "tuples[2].points['wide']"));
   request.mutable_tuples()->DeleteSubrange(1, 2);
   request.set_etag("stale");
   EXPECT_THAT(client_.Call(&SessionStub::SetCorrespondences, request, &response),
@@ -242,12 +241,14 @@ TEST_F(SmallLimitsTest, AreHeldOnBothSides) {
               Refuses(StatusCode::RESOURCE_EXHAUSTED, "SESSION_LIMIT"));
 
   v1::PutShapeResponse response;
-  EXPECT_THAT(client_.Call(&SessionStub::PutShape,
-                           PutImage("a", "large", PngOf(80, 40, kRed)), &response),
-              Refuses(StatusCode::INVALID_ARGUMENT, "IMAGE_TOO_LARGE"));
-  EXPECT_EQ(client_.Call(&SessionStub::PutShape, PutImage("a", "long", std::string(100'001, 'x')),
-                         &response).error_code(),
-            StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(
+      client_.Call(&SessionStub::PutShape, PutImage("a", "large", PngOf(80, 40, kRed)), &response),
+      Refuses(StatusCode::INVALID_ARGUMENT, "IMAGE_TOO_LARGE"));
+  EXPECT_EQ(
+      client_
+          .Call(&SessionStub::PutShape, PutImage("a", "long", std::string(100'001, 'x')), &response)
+          .error_code(),
+      StatusCode::RESOURCE_EXHAUSTED);
 
   v1::PutShapeRequest polygon;
   polygon.set_session_id("a");

@@ -30,10 +30,13 @@ TEST(CleanText, CutsBetweenCharacters) {
 }
 
 TEST(CleanText, ReplacesBytesThatAreNotUtf8) {
-  EXPECT_EQ(CleanText("a\xff" "b", 10), "a?b");
-  EXPECT_EQ(CleanText("\xc3", 10), "?");             // cut short
-  EXPECT_EQ(CleanText("\xc0\x80", 10), "??");        // overlong
-  EXPECT_EQ(CleanText("\xed\xa0\x80", 10), "???");   // a surrogate
+  EXPECT_EQ(CleanText("a\xff"
+                      "b",
+                      10),
+            "a?b");
+  EXPECT_EQ(CleanText("\xc3", 10), "?");                 // cut short
+  EXPECT_EQ(CleanText("\xc0\x80", 10), "??");            // overlong
+  EXPECT_EQ(CleanText("\xed\xa0\x80", 10), "???");       // a surrogate
   EXPECT_EQ(CleanText("\xf4\x90\x80\x80", 10), "????");  // beyond Unicode
 }
 
@@ -53,9 +56,7 @@ TEST(Shown, LeaksNothingOfABugAndGivesEachAnIdOfItsOwn) {
 }
 
 TEST(Guarded, TurnsAnythingThrownIntoAnError) {
-  const auto thrown = [](auto what) {
-    return Guarded([&]() -> Result<void> { throw what; });
-  };
+  const auto thrown = [](auto what) { return Guarded([&]() -> Result<void> { throw what; }); };
   EXPECT_THAT(thrown(std::runtime_error("no luck")), FailsSaying(ErrorCode::kInternal, "no luck"));
   EXPECT_THAT(thrown(std::bad_alloc()), FailsWith(ErrorCode::kInternal));
   EXPECT_THAT(thrown(42), FailsWith(ErrorCode::kInternal));
