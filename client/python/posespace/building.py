@@ -66,25 +66,38 @@ def _cancel(channel: Channel, session_id: str) -> None:
 def _changes(
     channel: Channel, session_id: str, deadline: float | None
 ) -> Iterator[session_service_pb2.Build]:
-    """The build after each change, without end: where the stream breaks it is taken up again after
-    the last change seen, until the service was away for longer than the timeout."""
+    """The build after each change, without end: where the stream breaks, it is taken up again after
+    the last change seen."""
     after_sequence = 0
-    pause = _FIRST_PAUSE
-    last_heard = time.monotonic()
     while True:
         request = session_service_pb2.WatchBuildRequest(
             session_id=session_id, after_sequence=after_sequence
         )
         remaining = None if deadline is None else max(0.0, deadline - time.monotonic())
         watch = channel.stream(channel.sessions.WatchBuild, request, remaining)
-        try:
-            with contextlib.closing(watch):
-                for event in watch:
-                    after_sequence = event.build.sequence
-                    yield event.build
-                    pause, last_heard = _FIRST_PAUSE, time.monotonic()
-        except Unavailable:
-            if time.monotonic() - last_heard > channel.timeout:
-                raise
+        with contextlib.closing(watch), contextlib.suppress(Unavailable):
+            for event in watch:
+                after_sequence = event.build.sequence
+                yield event.build
+        build = _once_reached(channel, session_id)
+        if build.sequence > after_sequence:
+            after_sequence = build.sequence
+            yield build
+
+
+def _once_reached(channel: Channel, session_id: str) -> session_service_pb2.Build:
+    """The build as it stands, as soon as the service answers; Unavailable when it does not within
+    the client's timeout."""
+    request = session_service_pb2.GetSessionRequest(session_id=session_id)
+    give_up = time.monotonic() + channel.timeout
+    pause = _FIRST_PAUSE
+    while True:
         time.sleep(pause)
         pause = min(2 * pause, _LONGEST_PAUSE)
+        try:
+            build: session_service_pb2.Build
+            build = channel.call(channel.sessions.GetSession, request).session.build
+            return build
+        except Unavailable:
+            if time.monotonic() > give_up:
+                raise

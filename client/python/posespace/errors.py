@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from typing import cast
 
 import grpc
-from google.rpc import error_details_pb2
+from google.rpc import error_details_pb2  # type: ignore[import-untyped]
 from grpc_status import rpc_status
 
 
@@ -113,7 +113,6 @@ _BY_CODE: dict[grpc.StatusCode, type[Error]] = {
 
 # Builds and streams carry reasons without a status code.
 _BY_REASON: dict[str, type[Error]] = {
-    "SHAPE_SOURCE_MISSING": InvalidDrawing,
     "SESSION_NOT_FOUND": NotFound,
     "SHAPE_NOT_FOUND": NotFound,
     "REVISION_NOT_FOUND": NotFound,
@@ -149,7 +148,9 @@ def error_of_reason(reason: str, message: str, fields: Mapping[str, str] | None 
 def error_of_call(error: grpc.RpcError, address: str, timeout: float | None) -> Error:
     """The error of a call that failed, with its google.rpc details."""
     code, message = error.code(), error.details() or ""
-    reason, fields, retry_after = "", {}, None
+    reason = ""
+    fields: dict[str, str] = {}
+    retry_after = None
     status = rpc_status.from_call(cast(grpc.Call, error))
     for detail in status.details if status is not None else ():
         if detail.Is(error_details_pb2.ErrorInfo.DESCRIPTOR):
@@ -159,7 +160,10 @@ def error_of_call(error: grpc.RpcError, address: str, timeout: float | None) -> 
         elif detail.Is(error_details_pb2.BadRequest.DESCRIPTOR):
             bad_request = error_details_pb2.BadRequest()
             detail.Unpack(bad_request)
-            fields = {v.field: v.description for v in bad_request.field_violations}
+            for at_fault in bad_request.field_violations:
+                said = fields.get(at_fault.field)
+                words = f"{said}; {at_fault.description}" if said else at_fault.description
+                fields[at_fault.field] = words
         elif detail.Is(error_details_pb2.RetryInfo.DESCRIPTOR):
             retry = error_details_pb2.RetryInfo()
             detail.Unpack(retry)

@@ -102,7 +102,7 @@ class Session:
         foreground  Which pixels are the drawing: "alpha", those whose alpha reaches the threshold.
         threshold   1 to 255; 128 by default.
         polygon     Ring (K, 2) in drawing pixels, simple, either orientation; `holes` likewise.
-        texture     Picture whose pixels are the drawing pixels of the polygon; one colour without it.
+        texture     Picture whose pixels are the polygon's drawing pixels; one colour without it.
         replace     Overwrite a drawing of the same id.
 
         Raises InvalidDrawing (the message says why no outline can be made of it), AlreadyExists
