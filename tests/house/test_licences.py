@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What posespaced loads may be shipped in a product: every library is known, and none is GPL."""
+
+import re
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Library (a pattern over its name without ".so") -> its licence, as its package states it.
+# A library that is new here is looked up first, and added only when its licence may be linked.
+REVIEWED = {
+    r"ld-linux.*|linux-vdso|libc|libm": "LGPL-2.1+",
+    r"libstdc\+\+|libgcc_s|libgfortran|libquadmath": "GPL-3+ with the GCC runtime exception",
+    r"libgrpc(\+\+)?|libgpr|libaddress_sorting|libabsl_\w+": "Apache-2.0",
+    r"libupb|libprotobuf|libre2": "BSD-3-Clause",
+    r"libssl|libcrypto|libtbb|libopencv_core|libopencv_imgproc": "Apache-2.0",
+    r"libspdlog|libfmt|libcares|libX11|libXau|libXdmcp|libxcb|libGLX|libGLdispatch": "MIT",
+    r"libGL|libOpenGL|libEGL": "MIT",
+    r"libblas|liblapack|libopenblas": "BSD-3-Clause",
+    r"libbsd|libmd": "BSD and ISC",
+    r"libgmp|libmpfr": "LGPL-3+",
+    r"libpng16": "libpng",
+    r"libz": "Zlib",
+}
+
+
+def loaded_libraries() -> list[str]:
+    program = ROOT / "build/bin/posespaced"
+    assert program.is_file(), f"{program} is not built; tests/run builds it"
+    listing = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
+    names = [line.split()[0].rsplit("/", 1)[-1] for line in listing.splitlines() if line.strip()]
+    return [re.sub(r"\.so.*", "", name) for name in names]
+
+
+def test_posespaced_loads_only_libraries_whose_licence_was_reviewed():
+    unknown = [
+        name
+        for name in loaded_libraries()
+        if not any(re.fullmatch(pattern, name) for pattern in REVIEWED)
+    ]
+    assert not unknown, f"look up the licence of {unknown}; a GPL library must not be linked"
+
+
+def test_the_review_would_notice_the_module_that_loads_gpl_libraries():
+    for name in ("libopencv_imgcodecs", "libx265", "libpoppler", "libcholmod"):
+        assert not any(re.fullmatch(pattern, name) for pattern in REVIEWED)
