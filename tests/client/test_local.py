@@ -10,6 +10,7 @@ import stat
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import posespace
@@ -24,11 +25,15 @@ def is_running(pid: int) -> bool:
         return False
 
 
-def wait_until_ended(pid: int) -> None:
-    deadline = time.monotonic() + 15
-    while is_running(pid):
-        assert time.monotonic() < deadline, f"process {pid} still runs"
+def wait_until(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 20
+    while not condition():
+        assert time.monotonic() < deadline
         time.sleep(0.05)
+
+
+def wait_until_ended(pid: int) -> None:
+    wait_until(lambda: not is_running(pid))
 
 
 def script(path: Path, text: str) -> Path:
@@ -42,7 +47,7 @@ def test_the_service_ends_with_its_block_and_leaves_no_log():
     with posespace.serve_locally() as server, posespace.connect(server.address) as client:
         client.ping()
         assert is_running(server.pid)
-        assert "event=ready" in server.log
+        wait_until(lambda: "event=ready" in server.log)
     assert not is_running(server.pid)
     assert server.log == ""
     server.stop()

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import threading
+import time
 
 import numpy as np
 import posespace
@@ -159,6 +160,25 @@ def test_frames_follow_new_placements_and_say_so(client):
         (after,) = player.frames([(0.5, 0.5)])
         assert before.revision != after.revision == revision == player.avatar.revision
         assert after.weights["step"] == pytest.approx(1)
+    session.delete()
+
+
+def test_weights_meant_for_other_drawings_are_not_taken_for_these(client):
+    session = make_walk(client)
+    with session.play() as player:
+        item = player.avatar.item(weights={"stand": 1.0})
+        session.delete_shape("stand")
+        session.put_shape("star", polygon=star())
+        session.set_placements({"step": (0, 0), "wave": (1, 0), "star": (0, 1)})
+        session.build()
+        deadline = time.monotonic() + 10
+        while player.avatar.shape_ids == ["stand", "step", "wave"]:
+            assert time.monotonic() < deadline
+            next(player.frames([(0, 0)]))
+        (answer,) = player.tick([item])
+        assert isinstance(answer, posespace.Conflict)
+        (frame,) = player.tick([player.avatar.item(weights={"star": 1.0})])
+        assert isinstance(frame, posespace.Frame)
     session.delete()
 
 

@@ -267,3 +267,34 @@ def test_an_arrangement_of_placements_on_one_line_works(session):
     session.set_placements({f"s{k}": (k, 2 * k) for k in range(3)})
     session.build()
     assert np.allclose(session.weights([(0, 0), (1, 2), (2, 4)]), np.eye(3), atol=1e-6)
+
+
+def test_weights_keep_their_names_when_drawings_come_and_go(session):
+    for k, name in enumerate("abc"):
+        session.put_shape(name, polygon=star(turn=0.1 * k))
+    session.build()
+    session.blend(weights={"a": 1.0})
+    session.delete_shape("a")
+    session.put_shape("d", polygon=star(turn=0.3))
+    old = session.blend(weights={"a": 1.0})  # the built pose space stays until the next build
+    assert list(old.weights) == ["a", "b", "c"]
+    session.build()
+    frame = session.blend(weights={"c": 0.25, "d": 0.75})
+    assert frame.weights == {"b": 0, "c": 0.25, "d": 0.75}
+    assert session.weights([(5, 5)]).shape == (1, 3)
+    with pytest.raises(posespace.NotFound):
+        session.blend(weights={"a": 1.0})
+
+
+def test_renders_at_weights_follow_a_rebuild_from_other_drawings(session):
+    for name, paint in (("red", (255, 0, 0, 255)), ("green", (0, 255, 0, 255))):
+        session.put_shape(name, image=np.full((60, 60, 4), paint, np.uint8))
+    session.build()
+    session.blend(weights={"red": 1.0})
+    session.delete_shape("red")
+    session.put_shape("blue", image=np.full((60, 60, 4), (0, 0, 255, 255), np.uint8))
+    session.build()
+    assert (session.render(weights={"green": 1.0})[256, 256] == (0, 255, 0, 255)).all()
+    session.delete_shape("green")
+    session.build()
+    assert (session.render(weights={"blue": 1.0})[256, 256] == (0, 0, 255, 255)).all()

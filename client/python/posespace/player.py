@@ -15,7 +15,7 @@ import grpc
 
 from posespace import messages
 from posespace.channel import Channel
-from posespace.errors import DeadlineExceeded, Error, Unavailable, error_of_reason
+from posespace.errors import Conflict, DeadlineExceeded, Error, Unavailable, error_of_reason
 from posespace.messages import BlendMethod, Place, ShearLimit
 from posespace.results import Frame
 from posespace.v1 import pose_service_pb2
@@ -54,7 +54,8 @@ class Avatar:
         """avatar.item(at=(0, 0.5)): a query as in Session.blend, to be answered by Player.tick."""
         options = messages.blend_options(method, shear_limit, refits, sigma)
         query = messages.query(at, weights, self.shape_ids, options)
-        return Item(self, pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query))
+        message = pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query)
+        return Item(self, message, None if weights is None else self.shape_ids)
 
     def _follow(self, message: Any) -> None:
         self.revision = message.revision
@@ -65,9 +66,27 @@ class Avatar:
 class Item:
     """One avatar's query in a tick; made by Avatar.item."""
 
-    def __init__(self, avatar: Avatar, message: pose_service_pb2.PlayRequest.Item) -> None:
+    def __init__(
+        self,
+        avatar: Avatar,
+        message: pose_service_pb2.PlayRequest.Item,
+        meant_for: list[str] | None = None,
+    ) -> None:
         self.avatar = avatar
         self._message = message
+        self._meant_for = meant_for  # the drawings that its weights name, in order
+
+    def _answer(self, result: pose_service_pb2.PlayResponse.ItemResult) -> Frame | Error:
+        avatar = self.avatar
+        if self._meant_for is not None and avatar.revision and self._meant_for != avatar.shape_ids:
+            return Conflict(
+                f"session '{avatar.session_id}' was built again from other drawings than the "
+                f"weights are for: {', '.join(avatar.shape_ids)}",
+                reason="REVISION_NOT_FOUND",
+            )
+        if result.reason:
+            return error_of_reason(result.reason, result.error_message)
+        return messages.frame(result.frame, avatar.shape_ids, avatar.revision)
 
 
 class Player:
@@ -93,7 +112,7 @@ class Player:
             queue.SimpleQueue()
         )
         self._avatars: dict[int, Avatar] = {}
-        self._asked: dict[int, list[Avatar]] = {}  # frames under way
+        self._asked: dict[int, list[Item]] = {}  # frames under way
         self._answers: dict[int, list[Frame | Error]] = {}  # here, and not yet their turn
         self._next_frame_id = 1
         self._draining_at: float | None = None
@@ -249,7 +268,7 @@ class Player:
                 )
             )
         )
-        self._asked[frame_id] = [item.avatar for item in items]
+        self._asked[frame_id] = items
         return frame_id
 
     def _await(self, frame_id: int) -> list[Frame | Error]:
@@ -297,14 +316,11 @@ class Player:
 
     def _take(self, result: pose_service_pb2.PlayResponse.FrameResult) -> None:
         """Keeps a frame's answers, with the revision that its avatars have at this moment."""
-        avatars = self._asked.pop(result.frame_id, None)
-        if avatars is None:  # nobody waits for it any more
+        items = self._asked.pop(result.frame_id, None)
+        if items is None:  # nobody waits for it any more
             return
         self._answers[result.frame_id] = [
-            error_of_reason(item.reason, item.error_message)
-            if item.reason
-            else messages.frame(item.frame, avatar.shape_ids, avatar.revision)
-            for avatar, item in zip(avatars, result.items, strict=True)
+            item._answer(answer) for item, answer in zip(items, result.items, strict=True)
         ]
 
     def _read(self) -> None:

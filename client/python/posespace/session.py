@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from posespace import messages
 from posespace.building import OnProgress, build_and_wait
 from posespace.channel import Channel
-from posespace.errors import InvalidArgument, NotFound
+from posespace.errors import Error, InvalidArgument, NotFound
 from posespace.messages import BlendMethod, Place, ShearLimit
 from posespace.pictures import Picture, decode_png, picture_bytes
 from posespace.player import Player
@@ -21,6 +21,9 @@ from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
 
 _BATCH = 256  # queries in one message, the service's limit unless it was told otherwise
 _REBUILDS = 5  # that may overtake one call before it gives up
+
+# What weights are refused with that are meant for other drawings than the built ones.
+_OTHER_DRAWINGS = ("SHAPE_NOT_FOUND", "WEIGHTS_COUNT_MISMATCH")
 
 T = TypeVar("T")
 
@@ -361,16 +364,14 @@ class Session:
 
         size  Width and height, 1 to 4096.
         view  What to show: x, y, width, height in drawing pixels, fitted with its aspect kept.  By
-              default the box of all drawings with a margin of a twentieth, the same everywhere.
+              default the box of all drawings and of their halves, with a margin; the same always.
 
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
         width, height = size
         options = messages.blend_options(method, shear_limit, refits, sigma)
-        shape_ids = self._revision_and_shape_ids()[1] if weights is not None else []
         request = pose_service_pb2.RenderRequest(
             session_id=self._id,
-            queries=[messages.query(at, weights, shape_ids, options)],
             width=width,
             height=height,
             format=pose_service_pb2.IMAGE_FORMAT_RGBA,
@@ -379,8 +380,17 @@ class Session:
             x, y, across, down = view
             request.view.CopyFrom(geometry_pb2.Box(x=x, y=y, width=across, height=down))
         channel = self._channel
-        (answer,) = channel.stream(channel.poses.Render, request, channel.timeout)
-        return np.frombuffer(answer.image, np.uint8).reshape(height, width, 4).copy()
+
+        def ask(revision: str, shape_ids: list[str]) -> NDArray[np.uint8]:
+            query = messages.query(at, weights, shape_ids, options)
+            del request.queries[:]
+            request.queries.append(query)
+            (answer,) = channel.stream(channel.poses.Render, request, channel.timeout)
+            if revision and answer.revision != revision:
+                raise NotFound("rendered another revision", reason="REVISION_NOT_FOUND")
+            return np.frombuffer(answer.image, np.uint8).reshape(height, width, 4).copy()
+
+        return ask("", []) if weights is None else self._of_one_revision(ask)
 
     def play(self, *, revision: str = "") -> Player:
         """Opens the stream of frames, with this session bound to it; see Player.
@@ -419,10 +429,12 @@ class Session:
         means; when a rebuild has overtaken it, it is made again for the new one.
         """
         for _ in range(_REBUILDS):
+            from_before = self._built is not None
             try:
                 return ask(*self._revision_and_shape_ids())
-            except NotFound as error:
-                if error.reason != "REVISION_NOT_FOUND":
+            except Error as error:
+                overtaken = error.reason == "REVISION_NOT_FOUND"
+                if not overtaken and not (from_before and error.reason in _OTHER_DRAWINGS):
                     raise
                 self._built = None
         return ask(*self._revision_and_shape_ids())
