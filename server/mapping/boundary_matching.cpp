@@ -20,9 +20,6 @@ namespace posespace {
 namespace {
 
 constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have been compared
-// Marks this far apart in two drawings, in drawing sizes, show that one is turned or bent so much
-// that where a place lies no longer says which it is.
-constexpr double kMovedFar = 1.0;
 constexpr double kUpright = std::numbers::pi / 4.0;  // marks that turn farther end uprightness
 constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
 
@@ -123,10 +120,6 @@ class GroupMatching {
         const std::vector<Anchor> anchors = MarkedAnchors(i, j);
         PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
         if (AreTurned(i, j, anchors)) weights.position = 0.0;
-        if (!anchors.empty() &&
-            AnchorDisplacement(curves_[i], curves_[j], anchors) > kMovedFar * kMovedFar) {
-          weights.position = 0.0;
-        }
         CoarseMatch match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
         if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours()) {
           PairWeights coloured = weights;

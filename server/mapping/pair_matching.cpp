@@ -175,10 +175,9 @@ Anchor MostSalient(const OutlineCurve& a, const OutlineCurve& b, const OutlineMa
 }
 
 // Mean squared distance of matched places from their centroids' point of view, no rotation.
-double PositionDifference(const OutlineCurve& a, const OutlineCurve& b,
-                          const std::vector<double>& on_a, const std::vector<double>& on_b) {
-  const Eigen::MatrixXd places_a = a.Features(on_a, 1.0).rightCols<2>();
-  const Eigen::MatrixXd places_b = b.Features(on_b, 1.0).rightCols<2>();
+double PositionDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map) {
+  const Eigen::MatrixXd places_a = a.Features(map.from(), 1.0).rightCols<2>();
+  const Eigen::MatrixXd places_b = b.Features(map.to(), 1.0).rightCols<2>();
   return (places_a - places_b).rowwise().squaredNorm().mean();
 }
 
@@ -246,7 +245,7 @@ FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
     const double limit = kStartTie * best->cost;
     double least = std::numeric_limits<double>::infinity();
     for (auto match = matches.begin(); match != matches.end(); ++match) {
-      const double difference = PositionDifference(a, b, match->map.from(), match->map.to());
+      const double difference = PositionDifference(a, b, match->map);
       if (match->cost > limit || difference >= least) continue;
       least = difference;
       best = match;
@@ -254,16 +253,6 @@ FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
   }
   Match refined = match_from({MostSalient(a, b, best->map)}, true);
   return {refined.cost, std::move(refined.map)};
-}
-
-double AnchorDisplacement(const OutlineCurve& a, const OutlineCurve& b,
-                          const std::vector<Anchor>& anchors) {
-  std::vector<double> on_a, on_b;
-  for (const Anchor& anchor : anchors) {
-    on_a.push_back(anchor.on_a);
-    on_b.push_back(anchor.on_b);
-  }
-  return PositionDifference(a, b, on_a, on_b);
 }
 
 double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map) {

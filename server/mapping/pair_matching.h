@@ -47,11 +47,6 @@ FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
                       const std::vector<Anchor>& anchors, const std::vector<double>& starts,
                       const PairWeights& weights);
 
-// The mean squared distance between the anchors' places in both drawings, from their centroids and
-// in drawing sizes.
-double AnchorDisplacement(const OutlineCurve& a, const OutlineCurve& b,
-                          const std::vector<Anchor>& anchors);
-
 // The mean colour difference along the map, RGB in [0, 1].
 double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map);
 

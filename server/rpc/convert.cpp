@@ -119,9 +119,7 @@ v1::BuildState ToProto(BuildState state) {
   return v1::BUILD_STATE_UNSPECIFIED;
 }
 
-}  // namespace
-
-Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
+Result<ShapeSource> SourceFromProto(const v1::PutShapeRequest& request) {
   switch (request.source_case()) {
     case v1::PutShapeRequest::kImage:
       return ImageFromProto(request.image());
@@ -132,6 +130,16 @@ Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
   }
   return Refusal(ErrorCode::kShapeSourceMissing, "source",
                  "is missing: give an image or a polygon");
+}
+
+}  // namespace
+
+Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
+  auto source = SourceFromProto(request);
+  if (source) return source;
+  Error refused = std::move(source).error();
+  refused.message = "shape '" + request.shape_id() + "': " + refused.message;
+  return refused;
 }
 
 Result<std::vector<Correspondence>> CorrespondencesFromProto(
@@ -166,7 +174,8 @@ Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) 
     if (!placement.has_at()) {
       unusable.push_back({field + ".at", "is missing"});
     } else if (!IsFinite(placement.at())) {
-      not_finite.push_back({field + ".at", "is not finite"});
+      not_finite.push_back(
+          {field + ".at", "of shape '" + placement.shape_id() + "' is not finite"});
     }
     const Point at(placement.at().x(), placement.at().y());
     if (!placements.emplace(placement.shape_id(), at).second) {

@@ -44,13 +44,20 @@ Error Refused(ErrorCode code, std::string field, std::string message) {
 
 Error Cancelled() { return Error{ErrorCode::kCancelled, "the build was cancelled", {}}; }
 
+// True when a person has said which part of drawing i is which: three marks leave little to find.
+bool IsMarked(const BuildInputs& inputs, std::size_t i) {
+  constexpr int kEnoughMarks = 3;
+  return std::count_if(inputs.landmarks.begin(), inputs.landmarks.end(), [i](const Landmark& each) {
+           return each.points[i].has_value();
+         }) >= kEnoughMarks;
+}
+
 // What a person should check in the pictures before trusting the blends.
-std::vector<std::string> WarningsOf(const MappingReport& report,
-                                    const std::vector<std::string>& ids) {
+std::vector<std::string> WarningsOf(const MappingReport& report, const BuildInputs& inputs) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < report.confidence.size(); ++i) {
-    if (report.confidence[i] >= kLeastConfidence) continue;
-    warnings.push_back("please check shape '" + ids[i] +
+    if (report.confidence[i] >= kLeastConfidence || IsMarked(inputs, i)) continue;
+    warnings.push_back("please check shape '" + inputs.drawings[i]->id +
                        "': it is not clear which part of it is which part of the others; mark "
                        "correspondences, or mirror it if it faces the other way");
   }
@@ -85,6 +92,30 @@ Result<Eigen::VectorXd> CheckedWeights(const Eigen::VectorXd& weights, int num_p
   return Eigen::VectorXd(weights / sum);
 }
 
+struct Box {
+  Point low, high;
+};
+
+// What the poses take up, and the blends halfway between any two: turning parts reach beyond both.
+Box ReachOf(const CompatibleMesh& mesh, const RigidBlend& blend) {
+  Box box{mesh.poses[0].row(0).transpose(), mesh.poses[0].row(0).transpose()};
+  const auto include = [&box](const Points& vertices) {
+    box.low = box.low.cwiseMin(vertices.colwise().minCoeff().transpose());
+    box.high = box.high.cwiseMax(vertices.colwise().maxCoeff().transpose());
+  };
+  BlendOptions rough;
+  rough.refits = 0;
+  for (int i = 0; i < mesh.num_poses(); ++i) {
+    include(mesh.poses[i]);
+    for (int j = 0; j < i; ++j) {
+      Eigen::VectorXd halves = Eigen::VectorXd::Zero(mesh.num_poses());
+      halves[i] = halves[j] = 0.5;
+      include(blend.At(halves, rough));
+    }
+  }
+  return box;
+}
+
 }  // namespace
 
 std::vector<MatchingShape> MatchingShapesOf(
@@ -115,6 +146,7 @@ struct PoseSpace::State {
   RigidBlend blend;  // with turns
   PoseWeights weights;
   MappingReport report;
+  Box reach;
 };
 
 Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inputs,
@@ -127,7 +159,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inp
   Progress mapping_progress(progress, 0.0, kMappingShare);
   auto mapping = TRY(MapShapes(MatchingShapesOf(inputs.drawings), inputs.landmarks, inputs.options,
                                &mapping_progress));
-  auto warnings = WarningsOf(mapping.report, IdsOf(inputs.drawings));
+  auto warnings = WarningsOf(mapping.report, inputs);
 
   if (progress != nullptr) progress->EnterStage("weights", kMappingShare, 1.0);
   auto blend = TRY(RigidBlend::Prepare(mapping.mesh));
@@ -161,12 +193,13 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Place(const std::shared_ptr<
   const bool upright = std::all_of(turns.begin(), turns.end(), [](int t) { return t == 0; });
   auto blend = upright ? body->blend : TRY(RigidBlend::Prepare(body->mesh, turns));
 
+  const Box reach = ReachOf(body->mesh, blend);
   MappingReport report = body->report;
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   report.seconds.emplace_back("weights", spent.count());
   auto state = std::make_shared<const State>(
       State{body, placements, RevisionDigest(body->mesh_digest, placements), std::move(turns),
-            std::move(blend), std::move(weights), std::move(report)});
+            std::move(blend), std::move(weights), std::move(report), reach});
   return std::shared_ptr<const PoseSpace>(new PoseSpace(std::move(state)));
 }
 
@@ -215,12 +248,7 @@ Image PoseSpace::Render(const Frame& frame, const View& view) const {
 }
 
 View PoseSpace::DefaultView(int width, int height) const {
-  Point low = mesh().poses[0].colwise().minCoeff();
-  Point high = mesh().poses[0].colwise().maxCoeff();
-  for (const Points& pose : mesh().poses) {
-    low = low.cwiseMin(pose.colwise().minCoeff().transpose());
-    high = high.cwiseMax(pose.colwise().maxCoeff().transpose());
-  }
+  const auto& [low, high] = state_->reach;
   const Point margin = kViewMargin * (high - low);
   return FitView(low - margin, high + margin, width, height);
 }

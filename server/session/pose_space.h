@@ -92,7 +92,7 @@ class PoseSpace {
   Image Render(const Frame& frame, const View& view) const;
 
   // The view that every picture of this pose space uses unless told otherwise: the box of all poses
-  // with a margin of a twentieth of it on each side.
+  // and of the blends halfway between any two, with a margin of a twentieth of it on each side.
   View DefaultView(int width, int height) const;
 
   const std::string& revision() const;     // RevisionDigest of its inputs

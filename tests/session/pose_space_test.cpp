@@ -235,14 +235,39 @@ TEST(PoseSpace, DrawsNothingForAFrameWithoutVertices) {
   EXPECT_EQ(image.rgba, std::vector<std::uint8_t>(20 * 10 * 4));
 }
 
+// Whether all vertices lie in a view of 200 x 100 pixels.
+bool IsShown(const View& view, const Points& vertices) {
+  return std::all_of(vertices.rowwise().begin(), vertices.rowwise().end(), [&](const auto& vertex) {
+    const Point pixel = (Point(vertex.transpose()) - view.origin) * view.scale;
+    return pixel.x() > 0 && pixel.x() < 200 && pixel.y() > 0 && pixel.y() < 100;
+  });
+}
+
 TEST(PoseSpace, ShowsEveryPoseInItsDefaultView) {
   const View view = Creatures().DefaultView(200, 100);
-  for (const Points& pose : Creatures().mesh().poses) {
-    for (const auto& vertex : pose.rowwise()) {
-      const Point pixel = (Point(vertex.transpose()) - view.origin) * view.scale;
-      EXPECT_TRUE(pixel.x() > 0 && pixel.x() < 200 && pixel.y() > 0 && pixel.y() < 100);
+  for (const Points& pose : Creatures().mesh().poses) EXPECT_TRUE(IsShown(view, pose));
+}
+
+TEST(PoseSpace, ShowsABentBarHalfwayStraightInItsDefaultView) {
+  // A bar bent up and the same bent down: straight between them, and wider than either.
+  BuildInputs inputs = CreatureInputs(2);
+  for (const int way : {-1, 1}) {
+    Points ring(42, 2);
+    for (int k = 0; k < 21; ++k) {
+      const double angle = way * (k - 10) * 0.14;
+      const Point outward(std::sin(angle), -way * std::cos(angle));
+      ring.row(k) = (110.0 * outward).transpose();
+      ring.row(41 - k) = (90.0 * outward).transpose();
     }
+    inputs.drawings[way > 0] = DrawingOf(way > 0 ? "down" : "up", PolygonSource{ring, {}, {}});
   }
+  const auto space = Built(inputs);
+  ASSERT_NE(space, nullptr);
+  const auto halfway = space->Blend(With({0.5, 0.5}));
+  ASSERT_THAT(halfway, Succeeds());
+  const double width = halfway->vertices.col(0).maxCoeff() - halfway->vertices.col(0).minCoeff();
+  EXPECT_GT(width, 240.0);
+  EXPECT_TRUE(IsShown(space->DefaultView(200, 100), halfway->vertices));
 }
 
 TEST(PoseSpace, ReportsItsStagesInOrder) {
@@ -281,6 +306,23 @@ TEST(PoseSpace, AsksToCheckADrawingThatFacesTheOtherWay) {
   const auto space = Built(inputs);
   ASSERT_NE(space, nullptr);
   EXPECT_TRUE(AsksToCheck(*space, "mirrored")) << space->report().confidence[2];
+}
+
+TEST(PoseSpace, AsksNothingAboutUnlikeDrawingsThatAPersonHasMarked) {
+  BuildInputs inputs = CreatureInputs(2);
+  const Points bar = PointsOf("0 90, 200 90, 200 110, 0 110");
+  inputs.drawings[1] = DrawingOf("bar", PolygonSource{bar, {}, {}});
+  const auto unmarked = Built(inputs);
+  ASSERT_NE(unmarked, nullptr);
+  EXPECT_TRUE(AsksToCheck(*unmarked, "bar")) << unmarked->report().confidence[1];
+
+  for (const int row : {0, 1, 2}) {
+    const Point on_creature = inputs.drawings[0]->outline.outer.row(20 * row).transpose();
+    inputs.landmarks.push_back({{on_creature, Point(bar.row(row).transpose())}});
+  }
+  const auto marked = Built(inputs);
+  ASSERT_NE(marked, nullptr);
+  EXPECT_FALSE(AsksToCheck(*marked, "bar"));
 }
 
 TEST(PoseSpace, AsksNothingAboutPosesThatMatchClearly) {
