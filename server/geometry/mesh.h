@@ -9,7 +9,8 @@
 
 // Every convention of the kernel, once:
 //
-//   Drawing coordinates   pixels of the source drawing, x right, y DOWN, as bitmaps and SVG have it.
+//   Drawing coordinates   pixels of the source drawing, x right, y DOWN, as bitmaps and SVG have
+//   it.
 //                         Pixel (i, j) covers the square [i, i+1] x [j, j+1].
 //   Positive              a triangle (a, b, c) is positive when cross(b - a, c - a) > 0 in these
 //                         coordinates; an outer ring is positively oriented when its signed area

@@ -80,15 +80,18 @@ double Perimeter(const Points& ring) {
 std::optional<std::pair<int, int>> FindCrossing(const Points& ring) {
   const int n = static_cast<int>(ring.rows());
   if (n < 3) return std::pair{0, std::max(0, n - 1)};
-  const auto low = [&](int k, int axis) { return std::min(ring(k, axis), ring((k + 1) % n, axis)); };
-  const auto high = [&](int k, int axis) { return std::max(ring(k, axis), ring((k + 1) % n, axis)); };
+  const auto low = [&](int k, int axis) {
+    return std::min(ring(k, axis), ring((k + 1) % n, axis));
+  };
+  const auto high = [&](int k, int axis) {
+    return std::max(ring(k, axis), ring((k + 1) % n, axis));
+  };
 
   // Sweep over edges by their left end: only edges that overlap in x are tested.
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    return std::pair(low(i, 0), i) < std::pair(low(j, 0), j);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::pair(low(i, 0), i) < std::pair(low(j, 0), j); });
   std::optional<std::pair<int, int>> first;
   std::vector<int> active;
   for (const int edge : order) {

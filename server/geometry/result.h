@@ -14,23 +14,23 @@ namespace posespace {
 // (rpc/status.cpp); a new value does not compile until both know it.
 enum class ErrorCode {
   // A drawing that cannot be used.
-  kImageUndecodable,   // not a picture, or damaged
-  kImageTooLarge,      // more pixels than the limit, read from the header
-  kOutlineEmpty,       // nothing painted
-  kOutlineTooSmall,    // too few painted pixels, or an outline without area
-  kOutlineNotSimple,   // a ring that crosses itself
-  kOutlineTooLong,     // more outline points than the limit
-  kShapeSourceMissing, // a PutShape without a picture or a polygon
+  kImageUndecodable,    // not a picture, or damaged
+  kImageTooLarge,       // more pixels than the limit, read from the header
+  kOutlineEmpty,        // nothing painted
+  kOutlineTooSmall,     // too few painted pixels, or an outline without area
+  kOutlineNotSimple,    // a ring that crosses itself
+  kOutlineTooLong,      // more outline points than the limit
+  kShapeSourceMissing,  // a PutShape without a picture or a polygon
   // Correspondences.
   kLandmarkNotFinite,
-  kLandmarkOffOutline, // too far from the outline it should mark
+  kLandmarkOffOutline,  // too far from the outline it should mark
   kLandmarksOutOfOrder,
   kTooManyLandmarks,
   // Building.
   kNoShapes,
   kTooManyShapes,
   kMeshTooLarge,
-  kSizeMismatch,       // rows that should correspond do not
+  kSizeMismatch,  // rows that should correspond do not
   // Pose space and blending.
   kPlacementNotFinite,
   kPlacementsCoincide,
@@ -57,11 +57,11 @@ enum class ErrorCode {
   kSessionLimit,
   kStreamLimit,
   kSlotLimit,
-  kSlotNotBound,       // an item of a stream that names a slot without a session
+  kSlotNotBound,  // an item of a stream that names a slot without a session
   kBuildQueueFull,
   kComputeQueueFull,
   kDraining,
-  kProtocolBreach,     // a stream message that makes no sense in its state
+  kProtocolBreach,  // a stream message that makes no sense in its state
   kInternal,
 };
 
@@ -85,8 +85,8 @@ struct Error {
 template <typename T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
-  Result(Error error) : state_(std::move(error)) {}      // NOLINT(google-explicit-constructor)
+  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
   bool has_value() const { return std::holds_alternative<T>(state_); }
   explicit operator bool() const { return has_value(); }
@@ -109,7 +109,7 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : state_(std::move(error)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
@@ -123,11 +123,11 @@ class [[nodiscard]] Result<void> {
 };
 
 // The value of a Result, or an early return of its error:  const auto mesh = TRY(Build(...));
-#define TRY(expression)                                               \
-  __extension__({                                                     \
-    auto try_result_ = (expression);                                  \
-    if (!try_result_) return std::move(try_result_).error();          \
-    std::move(try_result_).value();                                   \
+#define TRY(expression)                                      \
+  __extension__({                                            \
+    auto try_result_ = (expression);                         \
+    if (!try_result_) return std::move(try_result_).error(); \
+    std::move(try_result_).value();                          \
   })
 
 }  // namespace posespace

@@ -32,7 +32,8 @@ struct SimplifiedOutlines {
 // Requires  N >= 1 matched outlines (see boundary_matching.h) of n >= 3 rows each.
 // Fails     kCancelled.
 // Cost      O(N n log n + N n k), k = outline edges near a vertex.
-// Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Compatible simplification": greedy, the cost of
+// Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Compatible simplification": greedy, the cost
+// of
 //           a step is that of the drawing in which it is worst.
 Result<SimplifiedOutlines> SimplifyBoundaries(std::span<const Points> outlines,
                                               std::span<const int> landmark_rows,

@@ -64,7 +64,8 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
 
   if (const auto defect = FindDefect(*improved)) {
     return Error{ErrorCode::kInternal,
-                 "the finished mesh folds over in shape '" + shapes[defect->pose].name + "'", {}};
+                 "the finished mesh folds over in shape '" + shapes[defect->pose].name + "'",
+                 {}};
   }
   result.mesh = std::move(*improved);
   report.outline_vertices = static_cast<int>(simplified->outlines[0].rows());

@@ -21,11 +21,11 @@ struct MappingOptions {
 };
 
 struct MappingReport {
-  int outline_vertices = 0;        // rows of the simplified outlines
-  int steiner_vertices = 0;        // added by triangulation, before refinement
+  int outline_vertices = 0;  // rows of the simplified outlines
+  int steiner_vertices = 0;  // added by triangulation, before refinement
   bool used_overlay = false;
-  double min_angle = 0.0;          // of the final mesh, radians
-  std::vector<double> confidence;  // per drawing, as in MatchedOutlines
+  double min_angle = 0.0;                               // of the final mesh, radians
+  std::vector<double> confidence;                       // per drawing, as in MatchedOutlines
   std::vector<std::pair<std::string, double>> seconds;  // stage -> seconds, in order
 };
 
@@ -38,8 +38,8 @@ struct Mapping {
 // simplified together, triangulated compatibly, and the mesh improved.  Reports fractions of the
 // whole to `progress`, in stages "matching", "simplification", "triangulation", "improvement".
 //
-// Fails with what the stages fail with; the final mesh is verified by exact predicates, and a defect
-// is reported as kInternal rather than handed on.
+// Fails with what the stages fail with; the final mesh is verified by exact predicates, and a
+// defect is reported as kInternal rather than handed on.
 Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
                           std::span<const Landmark> landmarks = {},
                           const MappingOptions& options = {}, Progress* progress = nullptr);

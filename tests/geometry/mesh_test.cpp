@@ -12,8 +12,8 @@ namespace {
 
 TEST(MinAngle, OfATriangleIsItsSharpestCorner) {
   EXPECT_NEAR(MinAngle(Point(0, 0), Point(1, 0), Point(0, 1)), std::numbers::pi / 4, 1e-15);
-  EXPECT_NEAR(MinAngle(Point(0, 0), Point(1, 0), Point(0.5, std::sqrt(0.75))),
-              std::numbers::pi / 3, 1e-15);
+  EXPECT_NEAR(MinAngle(Point(0, 0), Point(1, 0), Point(0.5, std::sqrt(0.75))), std::numbers::pi / 3,
+              1e-15);
   EXPECT_EQ(MinAngle(Point(0, 0), Point(1, 1), Point(2, 2)), 0.0);
 }
 

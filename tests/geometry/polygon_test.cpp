@@ -60,17 +60,19 @@ TEST(FindCrossing, NamesTheFirstPairOfEdgesThatCross) {
 }
 
 TEST(FindCrossing, RefusesSpikesTouchesRepeatsAndDegenerateRings) {
-  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 2 0, 2 3")));           // an edge back over itself
-  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 4 4, 2 0, 0 4")));      // a vertex on another edge
-  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 4 4, 4 0, 0 4")));      // a vertex twice
-  EXPECT_FALSE(IsSimple(PointsOf("0 0, 1 1, 2 2")));                // no area
+  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 2 0, 2 3")));       // an edge back over itself
+  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 4 4, 2 0, 0 4")));  // a vertex on another edge
+  EXPECT_FALSE(IsSimple(PointsOf("0 0, 4 0, 4 4, 4 0, 0 4")));  // a vertex twice
+  EXPECT_FALSE(IsSimple(PointsOf("0 0, 1 1, 2 2")));            // no area
   EXPECT_FALSE(IsSimple(PointsOf("0 0, 1 1")));
 }
 
 TEST(FindCrossing, AgreesWithTryingAllPairs) {
   // Rings from a fixed multiplicative sequence, some simple and some not.
   std::uint32_t state = 7;
-  const auto next = [&] { return static_cast<double>((state = state * 48271u % 2147483647u) % 64); };
+  const auto next = [&] {
+    return static_cast<double>((state = state * 48271u % 2147483647u) % 64);
+  };
   int simple = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const int n = 3 + trial % 6;

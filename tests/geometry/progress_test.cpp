@@ -15,18 +15,16 @@ namespace {
 
 TEST(Progress, MapsEachStageIntoItsPartAndNeverFalls) {
   std::vector<std::pair<std::string, double>> heard;
-  Progress progress([&](std::string_view stage, double fraction) {
-    heard.emplace_back(stage, fraction);
-  });
+  Progress progress(
+      [&](std::string_view stage, double fraction) { heard.emplace_back(stage, fraction); });
   progress.EnterStage("matching", 0.0, 0.5);
   progress.Report(0.5);
   progress.Report(0.25);
   progress.EnterStage("weights", 0.5, 1.0);
   progress.Report(2.0);
-  EXPECT_THAT(heard, testing::ElementsAre(
-                         std::pair("matching", 0.0), std::pair("matching", 0.25),
-                         std::pair("matching", 0.25), std::pair("weights", 0.5),
-                         std::pair("weights", 1.0)));
+  EXPECT_THAT(heard, testing::ElementsAre(std::pair("matching", 0.0), std::pair("matching", 0.25),
+                                          std::pair("matching", 0.25), std::pair("weights", 0.5),
+                                          std::pair("weights", 1.0)));
 }
 
 TEST(Progress, IsCancelledFromAnotherThread) {
@@ -39,19 +37,18 @@ TEST(Progress, IsCancelledFromAnotherThread) {
 
 TEST(Progress, ShowsAPartAsItsShareOfTheWhole) {
   std::vector<std::pair<std::string, double>> heard;
-  Progress whole([&](std::string_view stage, double fraction) {
-    heard.emplace_back(stage, fraction);
-  });
+  Progress whole(
+      [&](std::string_view stage, double fraction) { heard.emplace_back(stage, fraction); });
   Progress part(&whole, 0.0, 0.5);
   part.EnterStage("matching", 0.0, 0.5);
   part.Report(1.0);
   part.EnterStage("improvement", 0.5, 1.0);
   part.Report(1.0);
   whole.EnterStage("weights", 0.5, 1.0);
-  EXPECT_THAT(heard, testing::ElementsAre(
-                         std::pair("matching", 0.0), std::pair("matching", 0.25),
-                         std::pair("improvement", 0.25), std::pair("improvement", 0.5),
-                         std::pair("weights", 0.5)));
+  EXPECT_THAT(heard,
+              testing::ElementsAre(std::pair("matching", 0.0), std::pair("matching", 0.25),
+                                   std::pair("improvement", 0.25), std::pair("improvement", 0.5),
+                                   std::pair("weights", 0.5)));
 }
 
 TEST(Progress, CancelsItsPartsButNotTheOtherWayRound) {

@@ -48,10 +48,16 @@ class Wire final : public PlayTransport {
   std::optional<ErrorCode> error;
 };
 
+// One session for all tests that leave it as it is: builds take their time.
+BuiltSession& SharedSession() {
+  static BuiltSession session;
+  return session;
+}
+
 class Play : public ::testing::Test {
  protected:
-  explicit Play(const Limits& limits = {})
-      : sessions_(limits), stream_(sessions_.registry(), limits, wire_) {
+  explicit Play(BuiltSession& sessions = SharedSession(), const Limits& limits = {})
+      : sessions_(sessions), stream_(sessions_.registry(), limits, wire_) {
     stream_.Start();
   }
 
@@ -125,7 +131,7 @@ class Play : public ::testing::Test {
   std::string Revision() { return (*sessions_.session().Built())->revision(); }
   int Vertices() { return (*sessions_.session().Built())->mesh().num_vertices(); }
 
-  BuiltSession sessions_;
+  BuiltSession& sessions_;
   Wire wire_;
   PlayStream stream_;
 };
@@ -148,7 +154,7 @@ TEST_F(Play, SaysWhatASlotIsBoundTo) {
 }
 
 TEST_F(Play, SaysWhyASlotCannotBeBound) {
-  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, ""}));
+  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, "raw"}));
   const std::vector<std::pair<v1::PlayRequest, std::string>> cases = {
       {Bind(0, "nobody"), "SESSION_NOT_FOUND"},
       {Bind(0, ""), "INVALID_ID"},
@@ -229,7 +235,7 @@ TEST_F(Play, ForgetsAnUnboundSlot) {
 }
 
 TEST_F(Play, BindsASlotAnew) {
-  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, ""}));
+  ASSERT_TRUE(sessions_.registry().Create({"raw", "", {}, "raw"}));
   BindSlot0();
   Say(Bind(0, "raw"));
   EXPECT_EQ(TakeAll().back().bound().reason(), "SESSION_NOT_BUILT");
@@ -240,7 +246,16 @@ TEST_F(Play, BindsASlotAnew) {
   EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "");
 }
 
-TEST_F(Play, SaysBetweenTwoFramesThatARevisionHasChanged) {
+// A session of its own; made before the stream.
+struct OwnSession {
+  BuiltSession own;
+};
+class PlayOfAChangingSession : private OwnSession, public Play {
+ protected:
+  PlayOfAChangingSession() : Play(own) {}
+};
+
+TEST_F(PlayOfAChangingSession, SaysBetweenTwoFramesThatARevisionHasChanged) {
   BindSlot0();
   Say(Tick(1, {0}));
   ASSERT_EQ(TakeAll().size(), 1u);
@@ -258,7 +273,7 @@ TEST_F(Play, SaysBetweenTwoFramesThatARevisionHasChanged) {
   EXPECT_EQ(messages[1].frame_result().items(0).frame().vertices().size(), 8u * Vertices());
 }
 
-TEST_F(Play, SaysThatARevisionHasChangedWithoutWaitingForAFrame) {
+TEST_F(PlayOfAChangingSession, SaysThatARevisionHasChangedWithoutWaitingForAFrame) {
   BindSlot0();
   ASSERT_TRUE(
       sessions_.session().SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(5, 5)}}, ""));
@@ -268,7 +283,7 @@ TEST_F(Play, SaysThatARevisionHasChangedWithoutWaitingForAFrame) {
   EXPECT_EQ(wire_.writing, nullptr) << "said twice";
 }
 
-TEST_F(Play, KeepsAPinnedRevision) {
+TEST_F(PlayOfAChangingSession, KeepsAPinnedRevision) {
   const std::string pinned = Revision();
   Say(Bind(0, "cell", pinned));
   ASSERT_EQ(TakeAll().back().bound().revision(), pinned);
@@ -280,7 +295,7 @@ TEST_F(Play, KeepsAPinnedRevision) {
   EXPECT_EQ(messages[0].frame_result().items(0).reason(), "");
 }
 
-TEST_F(Play, FreesTheSlotOfADeletedSession) {
+TEST_F(PlayOfAChangingSession, FreesTheSlotOfADeletedSession) {
   BindSlot0();
   ASSERT_TRUE(sessions_.registry().Delete("cell", ""));
   Say(Tick(1, {0}));
@@ -417,7 +432,7 @@ class PlayFarAhead : public Play {
     limits.max_in_flight = 1'000;
     return limits;
   }
-  PlayFarAhead() : Play(ManyInFlight()) {}
+  PlayFarAhead() : Play(SharedSession(), ManyInFlight()) {}
 };
 
 TEST_F(PlayFarAhead, StopsAnsweringAReaderThatDoesNotTake) {
