@@ -13,7 +13,7 @@
 namespace posespace {
 
 struct TriangulationOptions {
-  int max_vertices = 8000;  // more than this fails with kMeshTooLarge
+  int max_vertices = 8000;  // more than this, or an overlay of 4 times it, fails with kMeshTooLarge
   std::uint64_t seed = 1;   // of the overlay's circle angles; any seed gives a valid mesh
 };
 
@@ -36,9 +36,11 @@ struct Triangulation {
 //
 // Requires  N >= 1 simple outlines of K >= 3 rows each, positively oriented.
 // Fails     kOutlineNotSimple (names drawing index and edges), kSizeMismatch, kMeshTooLarge,
-//           kCancelled.
+//           kCancelled; kInternal where outlines that need a Steiner vertex leave no room for one
+//           between neighbouring doubles, in which case a mesh in doubles need not exist.
 // Cost      O(N K^3) without Steiner vertices; the overlay has at most C(N, 2) (K - 3)^2 crossings.
-// Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Compatible triangulation".
+// Serves    Baxter, Barla, Anjyo 2009, section 3.1, "Compatible triangulation".
+// Follows   Klincsek 1980 for the dynamic programme, Aronov, Seidel, Souvaine 1993 for the overlay.
 Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
                                             std::span<const int> landmark_rows,
                                             const TriangulationOptions& options = {},

@@ -21,12 +21,13 @@ namespace {
 // kDescent a round, so that later rounds split edges of a mesh that is already in shape.
 constexpr int kRounds = 10;
 constexpr double kDescent = 1.2;
-constexpr double kLongest = 1.4;     // targets, in the last two rounds
-constexpr double kShortest = 0.5;    // targets
-constexpr double kFineEnough = 2.0;  // times kLongest, where angles forbid more
-constexpr double kRounding = 1e-9;   // of an angle, when the middle of a side is rounded
-constexpr int kSweeps = 4;           // of smoothing between flips
-constexpr int kFinalRounds = 12;     // of flips and smoothing, at most
+constexpr double kLongest = 1.4;   // targets, in the last two rounds
+constexpr double kShortest = 0.5;  // targets
+constexpr double kTradable = 5.0;  // degrees: wider angles may be traded for others
+constexpr double kSharp = 15.0;    // degrees: vertices at smaller angles are removed for wider ones
+constexpr double kRounding = 1e-9;  // of an angle, when the middle of a side is rounded
+constexpr int kSweeps = 4;          // of smoothing between flips
+constexpr int kFinalRounds = 12;    // of flips and smoothing, at most
 
 double Cotangent(double degrees) { return 1.0 / std::tan(degrees * std::numbers::pi / 180.0); }
 
@@ -34,7 +35,7 @@ double Cotangent(double degrees) { return 1.0 / std::tan(degrees * std::numbers:
 // splits make none sharper than `sharpest`.
 CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable, double sharpest,
                               const ImprovementOptions& options, Progress* progress) {
-  const double sharp = Cotangent(15.0);
+  const double sharp = Cotangent(kSharp);
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   EditableMesh editable(mesh);
   Relax(editable, 2, kSweeps, tradable, progress);
@@ -50,19 +51,20 @@ CompatibleMesh RefineByLength(const CompatibleMesh& mesh, double tradable, doubl
   return editable.Finish();
 }
 
-// Refines by length with the mesh's smallest angle as the limit of trade.  Where that forbids most
-// splits, as in a square of two triangles, it starts again from quarters, which keep every angle.
+// Refines by length without a triangle sharper than the mesh's sharpest at any step.  Where that
+// forbids most splits, as in a square of two triangles, it starts again from quarters of the
+// triangles, which keep every angle.
 CompatibleMesh RefineKeepingAngles(CompatibleMesh mesh, const ImprovementOptions& options,
                                    Progress* progress) {
   const double given = (1.0 - kRounding) * MinAngle(mesh);
   const double sharpest = (1.0 + 0.5 * kRounding) * SharpestOf(mesh);
+  const double tradable = std::min(Cotangent(kTradable), sharpest);
   const std::vector<double> targets = TargetLengths(mesh, options.target_edge_length);
   for (;;) {
-    CompatibleMesh improved = RefineByLength(mesh, sharpest, sharpest, options, progress);
+    CompatibleMesh improved = RefineByLength(mesh, tradable, sharpest, options, progress);
     if (MinAngle(improved) < given) improved = mesh;
     const Eigen::Index finer = mesh.num_vertices() + EdgesOf(mesh.triangles).rows();
-    if (IsCancelled(progress) ||
-        LongestEdge(EditableMesh(improved), targets) <= kFineEnough * kLongest ||
+    if (IsCancelled(progress) || MeanEdge(EditableMesh(improved), targets) <= kLongest ||
         finer > options.max_vertices || !QuarterTriangles(mesh)) {
       return improved;
     }
@@ -75,7 +77,7 @@ Result<CompatibleMesh> ImproveMesh(CompatibleMesh mesh, const ImprovementOptions
                                    Progress* progress) {
   // Free trade between angles makes the best mesh, but may end below a good mesh's smallest angle.
   const double given = (1.0 - kRounding) * MinAngle(mesh);
-  const double tradable = Cotangent(5.0);
+  const double tradable = Cotangent(kTradable);
   const double sharpest = 2.0 * std::max(tradable, SharpestOf(mesh));
   CompatibleMesh improved = RefineByLength(mesh, tradable, sharpest, options, progress);
   if (MinAngle(improved) < given) {

@@ -85,12 +85,11 @@ std::vector<double> TargetLengths(const CompatibleMesh& mesh, double relative) {
   return targets;
 }
 
-double LongestEdge(const EditableMesh& mesh, std::span<const double> targets) {
-  double longest = 0.0;
-  for (const auto& [a, b] : mesh.AllEdges()) {
-    longest = std::max(longest, Length(mesh, targets, a, b));
-  }
-  return longest;
+double MeanEdge(const EditableMesh& mesh, std::span<const double> targets) {
+  const auto edges = mesh.AllEdges();
+  double sum = 0.0;
+  for (const auto& [a, b] : edges) sum += Length(mesh, targets, a, b);
+  return sum / static_cast<double>(edges.size());
 }
 
 void SplitLongEdges(EditableMesh& mesh, std::span<const double> targets, double longest,

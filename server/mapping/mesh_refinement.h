@@ -17,8 +17,8 @@ namespace posespace {
 // Per pose, `relative` sizes of the drawing.
 std::vector<double> TargetLengths(const CompatibleMesh& mesh, double relative);
 
-// The length of the longest edge.
-double LongestEdge(const EditableMesh& mesh, std::span<const double> targets);
+// The mean length of the edges.
+double MeanEdge(const EditableMesh& mesh, std::span<const double> targets);
 
 // Splits edges in the middle, longest first, until none is longer than `longest` or the mesh has
 // `max_vertices`.  Edges stay whole whose split would leave a triangle that is not positive, or one

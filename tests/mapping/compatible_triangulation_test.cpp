@@ -172,6 +172,14 @@ TEST(TriangulateCompatibly, RefusesAMeshOfMoreVerticesThanAllowed) {
   }
 }
 
+// Coordinates of the size of 2^54 are 4 apart, and these outlines leave no room for a vertex
+// between.
+TEST(TriangulateCompatibly, RefusesRatherThanFoldOverWhereNoDoubleFits) {
+  std::vector<Points> outlines = {PointsOf("0 0, 4 0, 4 4, 3 1"), PointsOf("3 1, 0 0, 4 0, 4 4")};
+  for (Points& outline : outlines) outline = (4.0 * outline.array() + 0x1p54).matrix();
+  EXPECT_THAT(TriangulateCompatibly(outlines, {}), FailsSaying(ErrorCode::kInternal, "too thin"));
+}
+
 TEST(TriangulateCompatibly, StopsWhenCancelled) {
   const auto outlines = DrawOutlines(OutlineFamilies()[1], 2, 4, 30);
   Progress cancelled_before;

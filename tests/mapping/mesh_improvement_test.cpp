@@ -44,8 +44,8 @@ double LongestEdge(const CompatibleMesh& mesh) {
 class ImproveFamily : public testing::TestWithParam<OutlineFamily> {};
 
 TEST_P(ImproveFamily, KeepsMeshesValidAndTheirSmallestAngle) {
-  for (const int count : {1, 2, 4}) {
-    for (const int n : {6, 24, 36}) {
+  for (const int count : {1, 3}) {
+    for (const int n : {6, 24}) {
       SCOPED_TRACE(testing::Message() << count << " outlines of " << n << " rows");
       const CompatibleMesh mesh = MeshOf(DrawOutlines(GetParam(), 10 * count + n, count, n));
       const auto improved = ImproveMesh(mesh);
