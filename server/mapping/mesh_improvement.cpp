@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "geometry/polygon.h"
 #include "mapping/editable_mesh.h"
 #include "mapping/mesh_refinement.h"
 #include "mapping/mesh_relaxation.h"

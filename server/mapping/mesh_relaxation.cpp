@@ -3,8 +3,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <utility>
 #include <vector>
