@@ -50,18 +50,25 @@ build() {
     fail "the build failed"
 }
 
-# make_venv [REQUIREMENTS]: build/venv with the Python client, and what REQUIREMENTS lists; again
-# only when one of these changed.
+# make_venv [REQUIREMENTS]: build/venv with the Python client, and what REQUIREMENTS lists; each again
+# only when it changed.
 make_venv() {
-  local requirements=${1:-} stamp
-  stamp=$( (find client/python proto -type f -not -path '*/__pycache__/*' -not -path '*/build/*' \
-            -not -path '*.egg-info/*' -print0 | sort -z | xargs -0 sha256sum
-            [ -z "$requirements" ] || sha256sum "$requirements") | sha256sum | cut -d' ' -f1)
-  local stamp_file=build/venv/${requirements:+tests-}stamp
-  if [ "$(cat "$stamp_file" 2>/dev/null)" = "$stamp" ]; then return; fi
-  say "Installing the Python client into build/venv"
   [ -x build/venv/bin/python ] || python3 -m venv build/venv || fail "python3 -m venv failed"
-  build/venv/bin/python -m pip install --quiet --disable-pip-version-check ./client/python \
-    ${requirements:+-r "$requirements"} || fail "pip install failed"
+  local sources
+  sources=$(git ls-files -co --exclude-standard client/python proto)
+  pip_install "the Python client" "$sources" ./client/python
+  if [ $# -gt 0 ]; then pip_install "what the tests need" "$1" -r "$1"; fi
+}
+
+# pip_install WHAT FILES ARGUMENT...: runs pip install ARGUMENT... in build/venv unless FILES are the
+# same as the last time.
+pip_install() {
+  local what=$1 files=$2 stamp stamp_file="build/venv/stamp-${1// /-}"
+  shift 2
+  stamp=$(sha256sum $files)
+  if [ "$(cat "$stamp_file" 2>/dev/null)" = "$stamp" ]; then return; fi
+  say "Installing $what into build/venv"
+  build/venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" ||
+    fail "pip install failed"
   echo "$stamp" >"$stamp_file"
 }
