@@ -215,19 +215,6 @@ TEST_F(PoseServiceTest, PlayEndsByAProtocolBreach) {
   EXPECT_THAT(call->Finish(), Refuses(StatusCode::INVALID_ARGUMENT, "PROTOCOL_BREACH"));
 }
 
-TEST_F(PoseServiceTest, PlayFollowsARebuildInBand) {
-  Built("tux");
-  const auto context = Client::Context();
-  const auto call = client_.poses->Play(context.get());
-  call->Write(Bind(0, "tux"));
-  Next(*call);
-  const std::string before = Next(*call).bound().revision();
-  const std::string after = Place("tux", 3.0).revision();
-  ASSERT_NE(before, after);
-  const auto changed = Next(*call);  // without a frame: within a second or so
-  EXPECT_EQ(changed.revision_changed().revision(), after);
-}
-
 TEST_F(PoseServiceTest, ASlowReaderCostsOnlyItself) {
   Built("tux");
   Client slow_client(server_->address());
