@@ -96,8 +96,24 @@ struct Box {
   Point low, high;
 };
 
-// What the poses take up, and the blends halfway between any two: turning parts reach beyond both.
-Box ReachOf(const CompatibleMesh& mesh, const RigidBlend& blend) {
+// The poses nearest to pose i in pose space, itself left out, at most `count`.
+std::vector<int> NeighboursOf(int i, const Points& placements, std::size_t count) {
+  std::vector<std::pair<double, int>> others;
+  for (int j = 0; j < placements.rows(); ++j) {
+    if (j != i) others.emplace_back((placements.row(j) - placements.row(i)).stableNorm(), j);
+  }
+  std::sort(others.begin(), others.end());
+  others.resize(std::min(others.size(), count));
+  std::vector<int> neighbours;
+  for (const auto& [distance, j] : others) neighbours.push_back(j);
+  return neighbours;
+}
+
+// What the poses take up, and the blends halfway to their neighbours: turning parts reach beyond
+// both.  Incomplete when cancelled.
+Box ReachOf(const CompatibleMesh& mesh, const RigidBlend& blend, const Points& placements,
+            const Progress* progress) {
+  constexpr std::size_t kNeighbours = 4;  // bounds the cost for many poses
   Box box{mesh.poses[0].row(0).transpose(), mesh.poses[0].row(0).transpose()};
   const auto include = [&box](const Points& vertices) {
     box.low = box.low.cwiseMin(vertices.colwise().minCoeff().transpose());
@@ -107,7 +123,8 @@ Box ReachOf(const CompatibleMesh& mesh, const RigidBlend& blend) {
   rough.refits = 0;
   for (int i = 0; i < mesh.num_poses(); ++i) {
     include(mesh.poses[i]);
-    for (int j = 0; j < i; ++j) {
+    for (const int j : NeighboursOf(i, placements, kNeighbours)) {
+      if (IsCancelled(progress)) return box;
       Eigen::VectorXd halves = Eigen::VectorXd::Zero(mesh.num_poses());
       halves[i] = halves[j] = 0.5;
       include(blend.At(halves, rough));
@@ -193,7 +210,8 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Place(const std::shared_ptr<
   const bool upright = std::all_of(turns.begin(), turns.end(), [](int t) { return t == 0; });
   auto blend = upright ? body->blend : TRY(RigidBlend::Prepare(body->mesh, turns));
 
-  const Box reach = ReachOf(body->mesh, blend);
+  const Box reach = ReachOf(body->mesh, blend, placements, progress);
+  if (IsCancelled(progress)) return Cancelled();
   MappingReport report = body->report;
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   report.seconds.emplace_back("weights", spent.count());

@@ -92,7 +92,8 @@ class PoseSpace {
   Image Render(const Frame& frame, const View& view) const;
 
   // The view that every picture of this pose space uses unless told otherwise: the box of all poses
-  // and of the blends halfway between any two, with a margin of a twentieth of it on each side.
+  // and of the blends halfway from each to its four nearest in pose space, with a margin of a
+  // twentieth of the box on each side.
   View DefaultView(int width, int height) const;
 
   const std::string& revision() const;     // RevisionDigest of its inputs
