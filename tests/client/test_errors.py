@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 import re
+import threading
 
 import numpy as np
 import posespace
@@ -366,6 +367,14 @@ def test_a_view_that_shows_nothing(walk, view):
 # Sessions.
 
 
+def test_a_closed_client_says_so(server, walk):
+    with posespace.connect(server.address) as client:
+        session = client.session(walk.id)
+    for call in (client.ping, session.play, lambda: session.render(at=(0, 0))):
+        with refused(posespace.Unavailable, "", "closed"):
+            call()
+
+
 def test_an_unknown_session(client):
     with refused(posespace.NotFound, "SESSION_NOT_FOUND", "nobody"):
         client.session("nobody")
@@ -407,13 +416,74 @@ def test_a_session_id_of_another_form(client, session_id):
 def test_too_many_sessions_are_refused_with_a_time_to_retry():
     with (
         posespace.serve_locally(flags=["--max-sessions", "2"]) as server,
-        posespace.connect(server.address) as client,
+        posespace.connect(server.address, timeout=0.9) as client,
     ):
         client.create_session()
         client.create_session()
         with refused(posespace.ResourceExhausted, "SESSION_LIMIT", "2") as refusal:
             client.create_session()
         assert refusal.value.retry_after > 0
+
+
+def test_a_session_that_finds_no_place_gets_one_when_another_goes():
+    with (
+        posespace.serve_locally(flags=["--max-sessions", "1"]) as server,
+        posespace.connect(server.address, timeout=10.0) as client,
+    ):
+        first = client.create_session()
+        threading.Timer(0.2, first.delete).start()
+        second = client.create_session()
+        assert [session.id for session in client.sessions()] == [second.id]
+
+
+@pytest.mark.parametrize(
+    ("words", "call"),
+    [
+        ("session_id is", lambda client, walk: client.create_session("\ud800")),
+        ("session_id is", lambda client, walk: client.session("\ud800")),
+        ("session_id is", lambda client, walk: client.create_session(7)),
+        ("labels is", lambda client, walk: client.create_session(labels={"a": "\ud800"})),
+        ("shape_id is", lambda client, walk: walk.put_shape("\ud800", polygon=star())),
+        ("shape_id is", lambda client, walk: walk.shape("\ud800")),
+        ("shape_id is", lambda client, walk: walk.texture_png("\ud800")),
+        ("image is", lambda client, walk: walk.put_shape("new", image="a\0b")),
+        ("threshold is", lambda client, walk: walk.put_shape("new", image=b"", threshold=2**40)),
+        ("polygon is", lambda client, walk: walk.put_shape("new", polygon="abc")),
+        ("a hole is", lambda client, walk: walk.put_shape("new", polygon=star(), holes=["abc"])),
+        ("placements is", lambda client, walk: walk.set_placements({"\ud800": (0, 0)})),
+        (
+            "the placement of shape 'stand' is",
+            lambda client, walk: walk.set_placements({"stand": 7}),
+        ),
+        ("placements is", lambda client, walk: walk.set_placements(7)),
+        (
+            "the mark in shape 'stand' is",
+            lambda client, walk: walk.set_correspondences([{"stand": ("a", "b")}]),
+        ),
+        ("tuples is", lambda client, walk: walk.set_correspondences([{"\ud800": (0, 0)}])),
+        ("tuples is", lambda client, walk: walk.set_correspondences([7])),
+        ("tolerance is", lambda client, walk: walk.start_build(tolerance="fine")),
+        ("at is", lambda client, walk: walk.blend(at=("a", "b"))),
+        ("at is", lambda client, walk: walk.blend(at=7)),
+        ("weights is", lambda client, walk: walk.blend(weights={"stand": "all"})),
+        ("refits is", lambda client, walk: walk.blend(at=(0, 0), refits=1.5)),
+        ("sigma is", lambda client, walk: walk.blend(at=(0, 0), sigma="sharp")),
+        ("points is", lambda client, walk: walk.blend_many([(0, 0), (1,)])),
+        ("size is", lambda client, walk: walk.render(at=(0, 0), size=(2**40, 1))),
+        ("size is", lambda client, walk: walk.render(at=(0, 0), size=(1.5, 2))),
+        ("size is", lambda client, walk: walk.render(at=(0, 0), size=7)),
+        ("view is", lambda client, walk: walk.render(at=(0, 0), view=(1, 2, 3))),
+    ],
+)
+def test_values_that_no_message_can_carry_are_refused_by_name(client, walk, words, call):
+    with refused(posespace.InvalidArgument, "INVALID_OPTION", words):
+        call(client, walk)
+
+
+def test_a_refused_picture_is_named_by_its_path(session):
+    with refused(posespace.InvalidDrawing, "IMAGE_UNDECODABLE") as refusal:
+        session.put_shape("jump", image=b"no picture")
+    assert list(refusal.value.fields) == ["shapes['jump'].image"]
 
 
 def test_the_tree_has_one_root():

@@ -9,6 +9,7 @@ from types import TracebackType
 
 from grpc_health.v1 import health_pb2
 
+from posespace import messages
 from posespace.channel import Channel
 from posespace.errors import Unavailable
 from posespace.session import Session
@@ -22,7 +23,8 @@ def connect(address: str, *, timeout: float = 5.0) -> Client:
             session = client.create_session("tux")
 
     timeout  Seconds that a call may take, and that a frame of a stream may be waited for, before
-             DeadlineExceeded.  Builds have a timeout of their own.
+             DeadlineExceeded.  Within it, a call that the service refuses for a moment (a full
+             queue) is tried again.  Builds have a timeout of their own.
 
     Nothing is sent until the first call.
     """
@@ -76,7 +78,8 @@ class Client:
 
         Raises AlreadyExists, InvalidArgument (INVALID_ID), ResourceExhausted (SESSION_LIMIT).
         """
-        request = session_service_pb2.CreateSessionRequest(
+        request = messages.make(
+            session_service_pb2.CreateSessionRequest,
             session_id=session_id or "",
             display_name=display_name,
             labels=labels or {},

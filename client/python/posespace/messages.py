@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import contextlib
+import reprlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import UTC
 from typing import Any, Literal, TypeVar
 
 import numpy as np
+from google.protobuf.message import Message
 from numpy.typing import ArrayLike, NDArray
 
 from posespace import results
@@ -15,6 +18,7 @@ from posespace.errors import InvalidArgument, NotFound
 from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
 
 T = TypeVar("T")
+M = TypeVar("M", bound=Message)
 
 BlendMethod = Literal["rigid", "linear", "paper"]
 ShearLimit = Literal["band", "hermite", "off"]
@@ -34,6 +38,28 @@ _SHEAR_LIMITS = {
 _FOREGROUNDS = {"alpha": session_service_pb2.FOREGROUND_ALPHA}
 
 
+@contextlib.contextmanager
+def argument(name: str, value: object) -> Iterator[None]:
+    """Python's own complaint about a value as InvalidArgument, which names the argument."""
+    try:
+        yield
+    except (AttributeError, LookupError, OverflowError, TypeError, ValueError) as error:
+        raise InvalidArgument(
+            f"{name} is {reprlib.repr(value)}: {error}", reason="INVALID_OPTION"
+        ) from None
+
+
+def make(kind: type[M], **fields: Any) -> M:
+    """A message of fields named as the arguments are; the one that does not fit is named."""
+    try:
+        return kind(**fields)
+    except (AttributeError, LookupError, OverflowError, TypeError, ValueError):
+        for name, value in fields.items():
+            with argument(name, value):
+                kind(**{name: value})
+        raise
+
+
 def _choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
     try:
         return choices[value]
@@ -51,7 +77,8 @@ def foreground(name: str) -> session_service_pb2.Foreground:
 
 def points_array(points: ArrayLike, what: str) -> NDArray[np.float64]:
     """(K, 2) float64, or InvalidArgument: flattened on the wire, another shape would go unseen."""
-    array = np.asarray(points, dtype=np.float64)
+    with argument(what, points):
+        array = np.asarray(points, dtype=np.float64)
     if array.size == 0:
         array = array.reshape(0, 2)
     if array.ndim != 2 or array.shape[1] != 2:
@@ -68,23 +95,38 @@ def ring(points: ArrayLike, what: str) -> geometry_pb2.Ring:
 
 def point(xy: Place, what: str) -> geometry_pb2.Point:
     """A point of two numbers."""
-    if len(xy) != 2:
-        raise InvalidArgument(f"{what} must be x and y, not {xy!r}", reason="INVALID_OPTION")
-    return geometry_pb2.Point(x=float(xy[0]), y=float(xy[1]))
+    with argument(what, xy):
+        if len(xy) == 2:
+            return geometry_pb2.Point(x=float(xy[0]), y=float(xy[1]))
+    raise InvalidArgument(f"{what} must be x and y, not {xy!r}", reason="INVALID_OPTION")
+
+
+def box(view: Sequence[float]) -> geometry_pb2.Box:
+    """A rectangle: x, y, width, height."""
+    with argument("view", view):
+        x, y, width, height = view
+        return geometry_pb2.Box(x=x, y=y, width=width, height=height)
+
+
+def picture_size(size: Sequence[int]) -> tuple[int, int]:
+    """Width and height, as whole numbers that the wire can carry."""
+    with argument("size", size):
+        width, height = size
+        message = pose_service_pb2.RenderRequest(width=width, height=height)
+        return message.width, message.height
 
 
 def blend_options(
     method: BlendMethod, shear_limit: ShearLimit | None, refits: int | None, sigma: float
 ) -> pose_service_pb2.BlendOptions:
     """How to blend."""
-    options = pose_service_pb2.BlendOptions(
+    return make(
+        pose_service_pb2.BlendOptions,
         method=_choice("method", method, _METHODS),
         shear_limit=_choice("shear_limit", shear_limit, _SHEAR_LIMITS),
+        refits=refits,
         sigma=sigma,
     )
-    if refits is not None:
-        options.refits = refits
-    return options
 
 
 def query(
@@ -106,7 +148,8 @@ def query(
                 f"has {', '.join(shape_ids)}",
                 reason="SHAPE_NOT_FOUND",
             )
-    values = [float(weights.get(shape_id, 0.0)) for shape_id in shape_ids]
+    with argument("weights", weights):
+        values = [float(weights.get(shape_id, 0.0)) for shape_id in shape_ids]
     return pose_service_pb2.Query(weights=pose_service_pb2.Weights(values=values), options=options)
 
 
@@ -123,8 +166,17 @@ def correspondence(points: Mapping[str, Place]) -> session_service_pb2.Correspon
     """One place of the character, marked in some drawings."""
     message = session_service_pb2.Correspondence()
     for shape_id, xy in points.items():
-        message.points[shape_id].CopyFrom(point(xy, f"the mark in shape '{shape_id}'"))
+        at = point(xy, f"the mark in shape {shape_id!r}")
+        with argument("tuples", points):
+            message.points[shape_id].CopyFrom(at)
     return message
+
+
+def placement(shape_id: str, at: Place) -> session_service_pb2.Placement:
+    """A drawing's place in pose space."""
+    where = point(at, f"the placement of shape {shape_id!r}")
+    with argument("placements", {shape_id: at}):
+        return session_service_pb2.Placement(shape_id=shape_id, at=where)
 
 
 def _rings(messages: Iterable[geometry_pb2.Ring]) -> list[NDArray[np.float64]]:

@@ -17,7 +17,7 @@ from posespace.messages import BlendMethod, Place, ShearLimit
 from posespace.pictures import Picture, decode_png, picture_bytes
 from posespace.player import Player
 from posespace.results import Build, BuildReport, Frame, Mesh, SessionState, Shape
-from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
+from posespace.v1 import pose_service_pb2, session_service_pb2
 
 _BATCH = 256  # queries in one message, the service's limit unless it was told otherwise
 _REBUILDS = 5  # that may overtake one call before it gives up
@@ -68,7 +68,7 @@ class Session:
 
     def state(self) -> SessionState:
         """session.state().placements, .correspondences, .etag, .revision, .build, ..."""
-        request = session_service_pb2.GetSessionRequest(session_id=self._id)
+        request = messages.make(session_service_pb2.GetSessionRequest, session_id=self._id)
         return messages.session_state(
             self._channel.call(self._channel.sessions.GetSession, request).session
         )
@@ -80,7 +80,7 @@ class Session:
         """
         self._channel.call(
             self._channel.sessions.DeleteSession,
-            session_service_pb2.DeleteSessionRequest(session_id=self._id, etag=etag),
+            messages.make(session_service_pb2.DeleteSessionRequest, session_id=self._id, etag=etag),
         )
 
     def put_shape(
@@ -111,29 +111,39 @@ class Session:
         Raises InvalidDrawing (the message says why no outline can be made of it), AlreadyExists
         when the id has another drawing, ResourceExhausted when the picture is too large to send.
         """
-        request = session_service_pb2.PutShapeRequest(
-            session_id=self._id, shape_id=shape_id, replace=replace
+        request = messages.make(
+            session_service_pb2.PutShapeRequest,
+            session_id=self._id,
+            shape_id=shape_id,
+            replace=replace,
         )
         if image is not None and polygon is not None:
             raise InvalidArgument(
                 f"shape '{shape_id}': give either image= or polygon=", reason="INVALID_OPTION"
             )
         if image is not None:
-            request.image.data = picture_bytes(image, shape_id)
-            request.image.foreground = messages.foreground(foreground)
-            if threshold is not None:
-                request.image.threshold = threshold
+            source = messages.make(
+                session_service_pb2.ImageSource,
+                foreground=messages.foreground(foreground),
+                threshold=threshold,
+            )
+            with messages.argument("image", image):
+                source.data = picture_bytes(image, shape_id)
+            request.image.CopyFrom(source)
         if polygon is not None:
             what = f"shape '{shape_id}': "
             request.polygon.outer.CopyFrom(messages.ring(polygon, what + "polygon"))
             request.polygon.holes.extend(messages.ring(hole, what + "a hole") for hole in holes)
             if texture is not None:
-                request.polygon.texture = picture_bytes(texture, shape_id)
+                with messages.argument("texture", texture):
+                    request.polygon.texture = picture_bytes(texture, shape_id)
         return messages.shape(self._channel.call(self._channel.sessions.PutShape, request).shape)
 
     def shape(self, shape_id: str) -> Shape:
         """A drawing's outline and warnings.  Raises NotFound."""
-        request = session_service_pb2.GetShapeRequest(session_id=self._id, shape_id=shape_id)
+        request = messages.make(
+            session_service_pb2.GetShapeRequest, session_id=self._id, shape_id=shape_id
+        )
         return messages.shape(self._channel.call(self._channel.sessions.GetShape, request).shape)
 
     def shapes(self) -> list[Shape]:
@@ -146,7 +156,9 @@ class Session:
         """Removes a drawing, its marks and its placement.  Raises NotFound."""
         self._channel.call(
             self._channel.sessions.DeleteShape,
-            session_service_pb2.DeleteShapeRequest(session_id=self._id, shape_id=shape_id),
+            messages.make(
+                session_service_pb2.DeleteShapeRequest, session_id=self._id, shape_id=shape_id
+            ),
         )
 
     def set_correspondences(
@@ -161,8 +173,13 @@ class Session:
         Raises InvalidArgument with every fault in `fields` (LANDMARK_OFF_OUTLINE,
         LANDMARKS_OUT_OF_ORDER, ...), NotFound, and Conflict when `etag` is given and outdated.
         """
-        request = session_service_pb2.SetCorrespondencesRequest(
-            session_id=self._id, tuples=map(messages.correspondence, tuples), etag=etag
+        with messages.argument("tuples", tuples):
+            marks = [messages.correspondence(points) for points in tuples]
+        request = messages.make(
+            session_service_pb2.SetCorrespondencesRequest,
+            session_id=self._id,
+            tuples=marks,
+            etag=etag,
         )
         changed = self._channel.call(self._channel.sessions.SetCorrespondences, request)
         return messages.session_state(changed.session)
@@ -178,15 +195,12 @@ class Session:
         Raises InvalidArgument (PLACEMENTS_COINCIDE, PLACEMENT_NOT_FINITE), NotFound, and Conflict
         when `etag` is given and outdated.
         """
-        request = session_service_pb2.SetPlacementsRequest(
+        with messages.argument("placements", placements):
+            placed = [messages.placement(shape_id, at) for shape_id, at in placements.items()]
+        request = messages.make(
+            session_service_pb2.SetPlacementsRequest,
             session_id=self._id,
-            placements=[
-                session_service_pb2.Placement(
-                    shape_id=shape_id,
-                    at=messages.point(at, f"the placement of shape '{shape_id}'"),
-                )
-                for shape_id, at in placements.items()
-            ],
+            placements=placed,
             etag=etag,
         )
         changed = self._channel.call(self._channel.sessions.SetPlacements, request)
@@ -212,13 +226,15 @@ class Session:
         on_progress         Called with the stage's name and the fraction done, which never falls.
         timeout             Seconds to wait; by default as long as the service lets a build take.
 
-        Ctrl-C, an exception in on_progress and the timeout cancel the build.  A dropped connection
-        does not: watching goes on once the service answers again within the client's timeout.
-        With the same inputs as a running or finished build it attaches to that one.
+        With the same inputs as a running or finished build it attaches to that one; else it starts
+        one, and waits for its place when too many builds are queued.  Ctrl-C, an exception in
+        on_progress and the timeout cancel a build that this call started, and only that.  A dropped
+        connection does not: watching goes on once the service answers again within the client's
+        timeout.
 
         Raises NotBuilt (NO_SHAPES) without drawings, InvalidArgument when drawings or marks
         contradict each other, Cancelled when somebody cancels or replaces the build,
-        ResourceExhausted when too many builds wait, DeadlineExceeded after `timeout`.
+        ResourceExhausted when the queue stays full for `timeout`, DeadlineExceeded after it.
         """
         request = self._build_request(tolerance, target_edge_length)
         return build_and_wait(self._channel, request, on_progress, timeout)
@@ -240,8 +256,10 @@ class Session:
     def _build_request(
         self, tolerance: float | None, target_edge_length: float | None
     ) -> session_service_pb2.StartBuildRequest:
-        options = session_service_pb2.BuildOptions(
-            tolerance=tolerance, target_edge_length=target_edge_length
+        options = messages.make(
+            session_service_pb2.BuildOptions,
+            tolerance=tolerance,
+            target_edge_length=target_edge_length,
         )
         return session_service_pb2.StartBuildRequest(session_id=self._id, options=options)
 
@@ -256,7 +274,9 @@ class Session:
 
         Raises NotFound, NotBuilt.
         """
-        request = pose_service_pb2.GetTextureRequest(session_id=self._id, shape_id=shape_id)
+        request = messages.make(
+            pose_service_pb2.GetTextureRequest, session_id=self._id, shape_id=shape_id
+        )
         png: bytes = self._channel.call(self._channel.poses.GetTexture, request).png
         return png
 
@@ -368,7 +388,7 @@ class Session:
 
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
-        width, height = size
+        width, height = messages.picture_size(size)
         options = messages.blend_options(method, shear_limit, refits, sigma)
         request = pose_service_pb2.RenderRequest(
             session_id=self._id,
@@ -377,8 +397,7 @@ class Session:
             format=pose_service_pb2.IMAGE_FORMAT_RGBA,
         )
         if view is not None:
-            x, y, across, down = view
-            request.view.CopyFrom(geometry_pb2.Box(x=x, y=y, width=across, height=down))
+            request.view.CopyFrom(messages.box(view))
         channel = self._channel
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.uint8]:
@@ -446,5 +465,7 @@ class Session:
         return self._built
 
     def _mesh_message(self, revision: str = "") -> Any:
-        request = pose_service_pb2.GetMeshRequest(session_id=self._id, revision=revision)
+        request = messages.make(
+            pose_service_pb2.GetMeshRequest, session_id=self._id, revision=revision
+        )
         return self._channel.call(self._channel.poses.GetMesh, request).mesh
