@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The connection: its settings, deadlines of calls, and their errors."""
+"""The connection: its settings, deadlines of calls, tries, and their errors."""
 
 from __future__ import annotations
 
+import random
 import re
+import time
 from collections.abc import Generator
 from types import SimpleNamespace
 from typing import Any
@@ -13,7 +15,7 @@ from google.protobuf.descriptor import ServiceDescriptor
 from google.protobuf.message_factory import GetMessageClass
 from grpc_health.v1 import health_pb2
 
-from posespace.errors import Error, ResourceExhausted, error_of_call
+from posespace.errors import Error, ResourceExhausted, Unavailable, error_of_call
 from posespace.v1 import pose_service_pb2, session_service_pb2
 
 _OPTIONS: list[tuple[str, int]] = [
@@ -63,12 +65,27 @@ def _calls(channel: grpc.Channel, service: ServiceDescriptor) -> SimpleNamespace
     return calls
 
 
+def _pause_before_another_try(refusal: Error, give_up: float) -> bool:
+    """Waits as long as the refusal asks for; False when it asks for none or there is no time."""
+    if not isinstance(refusal, ResourceExhausted | Unavailable) or refusal.retry_after is None:
+        return False
+    # Callers that were refused together must not come back together.
+    pause = refusal.retry_after * random.uniform(1.0, 2.0)
+    if time.monotonic() + pause >= give_up:
+        return False
+    time.sleep(pause)
+    return True
+
+
 class Channel:
     """One connection, for any number of threads.
 
     sessions, poses, health
                      The calls of the services, to be made through `call` and `stream`.
     timeout          Seconds that a call may take unless it says otherwise.
+
+    What the service refuses for now, with a time after which to try again (a full queue, say), is
+    tried again until the call's timeout would pass; then the last refusal is raised.
     """
 
     def __init__(self, address: str, timeout: float) -> None:
@@ -82,24 +99,53 @@ class Channel:
     def close(self) -> None:
         self.grpc.close()
 
-    def call(self, method: Any, request: Any) -> Any:
-        """The answer of a call, or posespace.Error."""
+    def begin(self, method: Any, request: Any, timeout: float | None = None) -> Any:
+        """What a call returns, before it is known how it ends."""
         try:
-            return method(request, timeout=self.timeout)
-        except grpc.RpcError as error:
-            raise self.error_of(error, self.timeout, request) from None
+            return method(request, timeout=timeout)
+        except ValueError as error:  # the transport's way to say that the channel is closed
+            raise Unavailable(f"the client of {self.address} cannot call: {error}") from None
+
+    def call(self, method: Any, request: Any, *, patience: float | None = None) -> Any:
+        """The answer of a call, or posespace.Error.
+
+        patience  Seconds in which a refused call may be tried again, each time with the whole
+                  timeout; by default all tries share the timeout.
+        """
+        give_up = time.monotonic() + (self.timeout if patience is None else patience)
+        while True:
+            try:
+                shared = max(0.0, give_up - time.monotonic())
+                timeout = shared if patience is None else self.timeout
+                return self.begin(method, request, timeout)
+            except grpc.RpcError as error:
+                refusal = self.error_of(error, self.timeout, request)
+            if not _pause_before_another_try(refusal, give_up):
+                raise refusal
 
     def stream(
         self, method: Any, request: Any, timeout: float | None
     ) -> Generator[Any, None, None]:
-        """The answers of a call one by one, or posespace.Error; ended early, it is cancelled."""
-        answers = method(request, timeout=timeout)
-        try:
-            yield from answers
-        except grpc.RpcError as error:
-            raise self.error_of(error, timeout, request) from None
-        finally:
-            answers.cancel()
+        """The answers of a call one by one, or posespace.Error; ended early, it is cancelled.
+
+        Only a stream that has not begun is tried again.
+        """
+        give_up = time.monotonic() + (self.timeout if timeout is None else timeout)
+        while True:
+            begun = False
+            remaining = None if timeout is None else max(0.0, give_up - time.monotonic())
+            answers = self.begin(method, request, remaining)
+            try:
+                for answer in answers:
+                    begun = True
+                    yield answer
+                return
+            except grpc.RpcError as error:
+                refusal = self.error_of(error, timeout, request)
+            finally:
+                answers.cancel()
+            if begun or not _pause_before_another_try(refusal, give_up):
+                raise refusal
 
     def error_of(
         self, error: grpc.RpcError, timeout: float | None = None, request: Any = None
