@@ -203,8 +203,22 @@ def test_a_session_deleted_under_a_stream_errs_alone(client, walk):
         avatar = player.bind(doomed)
         doomed.delete()
         dead, alive = player.tick([avatar.item(at=(0, 0)), player.avatar.item(at=(0, 0))])
-        assert isinstance(dead, posespace.Error)
+        assert isinstance(dead, posespace.NotFound) and dead.reason == "SESSION_NOT_FOUND"
         assert isinstance(alive, posespace.Frame)
+
+
+def test_frames_of_a_deleted_session_say_that_it_was_deleted(client):
+    session = make_walk(client)
+    with session.play() as player:
+        next(player.frames([(0, 0)]))
+        session.delete()
+        gone = f"session '{session.id}' was deleted"
+        with pytest.raises(posespace.NotFound, match=gone) as refusal:
+            list(player.frames([(0, 0)]))
+        assert refusal.value.reason == "SESSION_NOT_FOUND"
+        assert player.avatar.revision == ""
+        (answer,) = player.tick([player.avatar.item(weights={"stand": 1.0})])
+        assert isinstance(answer, posespace.NotFound) and answer.reason == "SESSION_NOT_FOUND"
 
 
 def test_more_sessions_than_slots_are_refused(walk):

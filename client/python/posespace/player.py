@@ -15,7 +15,14 @@ import grpc
 
 from posespace import messages
 from posespace.channel import Channel
-from posespace.errors import Conflict, DeadlineExceeded, Error, Unavailable, error_of_reason
+from posespace.errors import (
+    Conflict,
+    DeadlineExceeded,
+    Error,
+    NotFound,
+    Unavailable,
+    error_of_reason,
+)
 from posespace.messages import BlendMethod, Place, ShearLimit
 from posespace.results import Frame
 from posespace.v1 import pose_service_pb2
@@ -59,6 +66,8 @@ class Avatar:
 
     def _follow(self, message: Any) -> None:
         self.revision = message.revision
+        if not message.revision:
+            return
         self.vertex_count = message.vertex_count
         self.shape_ids = list(message.shape_ids)
 
@@ -83,6 +92,10 @@ class Item:
                 f"session '{avatar.session_id}' was built again from other drawings than the "
                 f"weights are for: {', '.join(avatar.shape_ids)}",
                 reason="REVISION_NOT_FOUND",
+            )
+        if result.reason == "SLOT_NOT_BOUND" and not avatar.revision:
+            return NotFound(
+                f"session '{avatar.session_id}' was deleted", reason="SESSION_NOT_FOUND"
             )
         if result.reason:
             return error_of_reason(result.reason, result.error_message)
@@ -115,10 +128,13 @@ class Player:
         self._asked: dict[int, list[Item]] = {}  # frames under way
         self._answers: dict[int, list[Frame | Error]] = {}  # here, and not yet their turn
         self._next_frame_id = 1
-        self._draining_at: float | None = None
+        self._said = threading.Lock()  # guards the three below: what was said, and what is owed
+        self._unanswered = 0
+        self._stop_sending_at: float | None = None  # the service ends
+        self._said_all = False
         self._ended: Error | None = None
 
-        self._call = channel.poses.Play(iter(self._outgoing.get, None))
+        self._call = channel.begin(channel.poses.Play, iter(self._outgoing.get, None))
         self._reader = threading.Thread(target=self._read, name="posespace-play", daemon=True)
         self._reader.start()
         try:
@@ -188,8 +204,8 @@ class Player:
         session that play() was called on; without weights frames are smaller on the wire.
 
         Raises the errors of Session.blend for a point that cannot be answered (the stream goes on),
-        DeadlineExceeded when a frame takes longer than the client's timeout, Unavailable when the
-        service ends.
+        NotFound once the session was deleted, DeadlineExceeded when a frame takes longer than the
+        client's timeout, Unavailable when the service ends (DRAINING: it said so in time).
         """
         avatar = avatar or self.avatar
         options = messages.blend_options(method, shear_limit, refits, sigma)
@@ -239,8 +255,11 @@ class Player:
         slot = next(slot for slot in range(len(self._avatars) + 1) if slot not in self._avatars)
         self._send(
             pose_service_pb2.PlayRequest(
-                bind=pose_service_pb2.PlayRequest.Bind(
-                    slot=slot, session_id=session_id, pinned_revision=revision
+                bind=messages.make(
+                    pose_service_pb2.PlayRequest.Bind,
+                    slot=slot,
+                    session_id=session_id,
+                    pinned_revision=revision,
                 )
             )
         )
@@ -283,13 +302,18 @@ class Player:
         self._answers.pop(frame_id, None)
 
     def _send(self, request: pose_service_pb2.PlayRequest) -> None:
-        if self._draining_at is not None and time.monotonic() >= self._draining_at:
-            self._ended = Unavailable(
-                f"the service at {self._channel.address} is ending", reason="DRAINING"
-            )
         if self._ended is not None:
             raise self._ended
-        self._outgoing.put(request)
+        with self._said:
+            stop_at = self._stop_sending_at
+            if self._said_all or (stop_at is not None and time.monotonic() >= stop_at):
+                raise self._draining()
+            if request.WhichOneof("message") != "unbind":
+                self._unanswered += 1
+            self._outgoing.put(request)
+
+    def _draining(self) -> Unavailable:
+        return Unavailable(f"the service at {self._channel.address} is ending", reason="DRAINING")
 
     def _receive(self, give_up: float) -> pose_service_pb2.PlayResponse:
         """The next message, already taken note of."""
@@ -309,9 +333,6 @@ class Player:
             self._take(message.frame_result)
         elif kind == "revision_changed" and message.revision_changed.slot in self._avatars:
             self._avatars[message.revision_changed.slot]._follow(message.revision_changed)
-        elif kind == "draining":
-            grace = message.draining.stop_sending_in.ToTimedelta().total_seconds()
-            self._draining_at = time.monotonic() + grace
         return message
 
     def _take(self, result: pose_service_pb2.PlayResponse.FrameResult) -> None:
@@ -327,9 +348,23 @@ class Player:
         """Hands over what the service says; a stream alone would wait for it without a limit."""
         try:
             for message in self._call:
+                self._note(message)
                 self._incoming.put(message)
-            self._incoming.put(
-                Unavailable(f"the service at {self._channel.address} has ended the stream")
-            )
+            ended = Unavailable(f"the service at {self._channel.address} has ended the stream")
+            self._incoming.put(ended if self._stop_sending_at is None else self._draining())
         except grpc.RpcError as error:
             self._incoming.put(self._channel.error_of(error))
+
+    def _note(self, message: pose_service_pb2.PlayResponse) -> None:
+        """Says the last word to a service that ends as soon as it owes nothing, so that an idle
+        player does not hold it."""
+        kind = message.WhichOneof("message")
+        with self._said:
+            if kind in ("bound", "frame_result"):
+                self._unanswered -= 1
+            elif kind == "draining":
+                grace = message.draining.stop_sending_in.ToTimedelta().total_seconds()
+                self._stop_sending_at = time.monotonic() + grace
+            if self._stop_sending_at is not None and self._unanswered == 0:
+                self._said_all = True
+                self._outgoing.put(None)
