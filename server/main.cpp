@@ -6,7 +6,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
+#include <thread>
 
 #include "ops/config.h"
 #include "ops/logging.h"
@@ -27,6 +29,15 @@ void Drain(posespace::Server& server, const posespace::Termination& termination,
     if (termination.WaitFor(kLook)) break;
   }
   server.Shutdown(std::min(grace, milliseconds(500)));
+}
+
+// Ends the program when stopping takes longer than that, whatever holds it.
+void EndAtLatest(milliseconds time) {
+  std::thread([time] {
+    std::this_thread::sleep_for(time);
+    spdlog::error("event=gave_up reason=\"work did not stop in time\"");
+    std::_Exit(1);
+  }).detach();
 }
 
 int Refuse(const posespace::Error& error) {
@@ -52,6 +63,7 @@ int main(int argc, char** argv) {
   spdlog::info("event=ready grpc={}", (*server)->address());
 
   termination.Wait();
+  EndAtLatest(config.drain_grace + milliseconds(5000));
   spdlog::info("event=draining streams={}", (*server)->open_streams());
   Drain(**server, termination, config.drain_grace);
   spdlog::info("event=stopped");

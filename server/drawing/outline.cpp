@@ -227,6 +227,9 @@ Result<Outline> TraceOutline(const Image& image, const OutlineOptions& options) 
   if (options.working_size < kMinWorkingSize || options.working_size > kMaxWorkingSize) {
     return refuse("working_size", options.working_size, kMinWorkingSize, kMaxWorkingSize);
   }
+  // Pictures are traced side by side; OpenCV's own threads would only get in the way of streams.
+  static const bool one_thread = (cv::setNumThreads(1), true);
+  static_cast<void>(one_thread);
   try {
     return Trace(image, options);
   } catch (const cv::Exception& exception) {

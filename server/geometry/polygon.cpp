@@ -77,7 +77,7 @@ double Perimeter(const Points& ring) {
   return length;
 }
 
-std::optional<std::pair<int, int>> FindCrossing(const Points& ring) {
+std::optional<std::pair<int, int>> FindCrossing(const Points& ring, const Progress* progress) {
   const int n = static_cast<int>(ring.rows());
   if (n < 3) return std::pair{0, std::max(0, n - 1)};
   const auto low = [&](int k, int axis) {
@@ -95,6 +95,7 @@ std::optional<std::pair<int, int>> FindCrossing(const Points& ring) {
   std::optional<std::pair<int, int>> first;
   std::vector<int> active;
   for (const int edge : order) {
+    if (IsCancelled(progress)) return std::nullopt;
     std::erase_if(active, [&](int other) { return high(other, 0) < low(edge, 0); });
     for (const int other : active) {
       if (high(other, 1) < low(edge, 1) || high(edge, 1) < low(other, 1)) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/mesh.h"
+#include "geometry/progress.h"
 
 // Exact tests on points, segments and rings.  Every answer is exact for the doubles given
 // (CGAL's filtered predicates); no epsilon decides a sign.  All functions are pure.
@@ -32,8 +33,10 @@ double Perimeter(const Points& ring);
 
 // The first pair of edges (i, j), i < j, that meet where they must not, or nothing when the ring
 // is simple.  Edge k goes from row k to row k + 1.  Neighbouring edges must share their common
-// point only.  Cost O(K^2) exact tests behind a bounding-box filter along x.
-std::optional<std::pair<int, int>> FindCrossing(const Points& ring);
+// point only.  Cost O(K^2) exact tests behind a bounding-box filter along x; a cancelled search
+// finds nothing, and its caller asks `progress` whether that counts.
+std::optional<std::pair<int, int>> FindCrossing(const Points& ring,
+                                                const Progress* progress = nullptr);
 inline bool IsSimple(const Points& ring) { return !FindCrossing(ring).has_value(); }
 
 // Where p lies: +1 inside the ring, 0 on it, -1 outside (even-odd rule, exact).

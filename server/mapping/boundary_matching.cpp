@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include "geometry/polygon.h"
 #include "mapping/common_rows.h"
@@ -21,6 +23,8 @@ namespace {
 
 constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have been compared
 constexpr double kUpright = std::numbers::pi / 4.0;  // marks that turn farther end uprightness
+constexpr int kMaxCorners =
+    100'000;                       // of all outlines together; each becomes a row of every outline
 constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
 
 std::vector<OutlineCurve> CurvesOf(std::span<const MatchingShape> shapes) {
@@ -226,6 +230,21 @@ std::vector<T> Reordered(const std::vector<T>& values, const std::vector<int>& o
   return result;
 }
 
+Result<void> CheckCorners(std::span<const MatchingShape> shapes) {
+  std::int64_t corners = 0;
+  const MatchingShape* longest = &shapes[0];
+  for (const MatchingShape& shape : shapes) {
+    corners += shape.outline.rows();
+    if (shape.outline.rows() > longest->outline.rows()) longest = &shape;
+  }
+  if (corners <= kMaxCorners) return {};
+  return Error{ErrorCode::kOutlineTooLong,
+               "the outlines have " + std::to_string(corners) + " points together, the longest '" +
+                   longest->name + "' " + std::to_string(longest->outline.rows()) + "; at most " +
+                   std::to_string(kMaxCorners) + " are matched: give rings of fewer points",
+               {{"shapes['" + longest->name + "'].outline", "has too many points"}}};
+}
+
 }  // namespace
 
 Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
@@ -238,6 +257,7 @@ Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
 Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
                                         std::span<const Landmark> landmarks,
                                         const MatchingOptions& options, Progress* progress) {
+  TRY(CheckCorners(shapes));
   const std::vector<OutlineCurve> curves = CurvesOf(shapes);
   Marks marks = TRY(PlaceLandmarks(shapes, curves, landmarks, options));
   const std::vector<int> order = CanonicalOrder(shapes, marks);
@@ -245,7 +265,8 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
   const std::vector<int> of_tuple = marks.of_tuple;
 
   GroupMatching matching(Reordered(curves, order), std::move(marks), options, progress);
-  if (!matching.Run()) return Error{ErrorCode::kCancelled, "matching was cancelled", {}};
+  const Error cancelled{ErrorCode::kCancelled, "matching was cancelled", {}};
+  if (!matching.Run()) return cancelled;
 
   CommonRows rows = matching.Rows();
   const std::vector<double> confidence = matching.Confidence();
@@ -254,7 +275,9 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
   result.confidence.resize(shapes.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const MatchingShape& shape = shapes[order[k]];
-    if (const auto crossing = FindCrossing(rows.outlines[k])) {
+    const auto crossing = FindCrossing(rows.outlines[k], progress);
+    if (IsCancelled(progress)) return cancelled;
+    if (crossing) {
       return Error{
           ErrorCode::kOutlineNotSimple,
           "shape '" + shape.name + "': its outline passes itself closer than numbers can tell",

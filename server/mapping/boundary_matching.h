@@ -71,7 +71,7 @@ Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
 // Fails     kLandmarkNotFinite, kLandmarkOffOutline (names landmark, drawing, distance and limit),
 //           kLandmarksOutOfOrder (names every contradicting pair of landmarks with two drawings),
 //           kOutlineNotSimple (an outline that passes itself as closely as numbers round),
-//           kCancelled.
+//           kOutlineTooLong (more than 100,000 corners together), kCancelled.
 // Cost      O(N^2 M^3) with M = 64 samples to compare all pairs from every start, O(N M^2) with
 //           M = 256 to match.
 // Follows   Baxter, Barla, Anjyo 2009, section 3.1, "Boundary matching", with a multi-scale elastic

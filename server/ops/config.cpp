@@ -44,6 +44,8 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
   AddLimit(app, accepted, "--max-request-bytes", limits.max_request_bytes, "one request",
            std::int64_t{1} << 30);
   AddLimit(app, accepted, "--max-image-pixels", limits.max_image_pixels, "pixels of one picture");
+  AddLimit(app, accepted, "--max-session-pixels", limits.max_session_pixels,
+           "pixels of all pictures of one session");
   AddLimit(app, accepted, "--max-shapes", limits.max_shapes, "drawings of one session");
   AddLimit(app, accepted, "--max-outline-points", limits.max_outline_points, "points of one ring");
   AddLimit(app, accepted, "--max-landmarks", limits.max_landmarks,
@@ -54,6 +56,8 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
   const std::string running = "Limits on how much runs at once";
   AddLimit(app, running, "--max-sessions", limits.max_sessions, "sessions");
   AddLimit(app, running, "--max-streams", limits.max_streams, "open streams");
+  AddLimit(app, running, "--max-picture-bytes", limits.max_picture_bytes,
+           "rendered pictures that wait to be read");
   AddLimit(app, running, "--max-stream-slots", limits.max_stream_slots, "sessions of one stream",
            65'536);
   AddLimit(app, running, "--max-stream-items", limits.max_stream_items, "items of one Play frame");

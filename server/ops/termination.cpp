@@ -2,6 +2,7 @@
 #include "ops/termination.h"
 
 #include <cerrno>
+#include <csignal>
 
 namespace posespace {
 
@@ -10,6 +11,8 @@ Termination::Termination() {
   sigaddset(&signals_, SIGTERM);
   sigaddset(&signals_, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  // A reader of the log that goes away must not take the service with it.
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 void Termination::Wait() const {

@@ -91,7 +91,7 @@ void PlayStream::Work() {
 void PlayStream::Beat(Clock::time_point now) {
   std::unique_lock lock(mutex_);
   if (cut_off_ && now >= *cut_off_) End(Error{ErrorCode::kDraining, "the service has ended", {}});
-  if (!working_ && !outcome_) {
+  if (!working_ && !outcome_ && queued_bytes_ <= kQueuedBytes) {
     slots_.FollowRevisions([this](v1::PlayResponse answer) { Queue(std::move(answer)); });
   }
   if (outgoing_.empty() && now - last_said_ >= kHeartbeat) {

@@ -90,7 +90,7 @@ grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* PoseService::Play(
 
 grpc::ServerWriteReactor<v1::RenderResponse>* PoseService::Render(
     grpc::CallbackServerContext* /*context*/, const v1::RenderRequest* request) {
-  return new RenderStream(registry_, streams_, bulk_pool_, *request);
+  return new RenderStream(registry_, streams_, bulk_pool_, pictures_, *request);
 }
 
 }  // namespace posespace

@@ -5,6 +5,7 @@
 #include "posespace/v1/pose_service.grpc.pb.h"
 #include "rpc/compute_pool.h"
 #include "rpc/live_streams.h"
+#include "rpc/picture_budget.h"
 #include "session/registry.h"
 
 namespace posespace {
@@ -15,7 +16,11 @@ class PoseService final : public v1::PoseService::CallbackService {
  public:
   PoseService(Registry& registry, LiveStreams& streams, ComputePool& blend_pool,
               ComputePool& bulk_pool)
-      : registry_(registry), streams_(streams), blend_pool_(blend_pool), bulk_pool_(bulk_pool) {}
+      : registry_(registry),
+        streams_(streams),
+        blend_pool_(blend_pool),
+        bulk_pool_(bulk_pool),
+        pictures_(registry.limits().max_picture_bytes) {}
 
   grpc::ServerUnaryReactor* GetMesh(grpc::CallbackServerContext* context,
                                     const v1::GetMeshRequest* request,
@@ -39,6 +44,7 @@ class PoseService final : public v1::PoseService::CallbackService {
   LiveStreams& streams_;
   ComputePool& blend_pool_;
   ComputePool& bulk_pool_;
+  PictureBudget pictures_;
 };
 
 }  // namespace posespace

@@ -16,8 +16,12 @@ constexpr int kAhead = 2;
 }  // namespace
 
 RenderStream::RenderStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
-                           const v1::RenderRequest& request)
-    : StreamWriter(Call("Render")), streams_(streams), pool_(pool), request_(request) {
+                           PictureBudget& budget, const v1::RenderRequest& request)
+    : StreamWriter(Call("Render")),
+      streams_(streams),
+      pool_(pool),
+      budget_(budget),
+      request_(request) {
   if (auto begun = Guarded([&] { return Begin(registry); }); !begun) Close(std::move(begun));
   Release();
 }
@@ -31,6 +35,13 @@ Result<void> RenderStream::Begin(const Registry& registry) {
   for (int k = 0; k < request_.queries_size(); ++k) {
     TRY(BlendQuery(*pose_space_, request_.queries(k), QueryField(k), /*weights_only=*/true));
   }
+  const std::int64_t bytes = std::int64_t{4} * kAhead * view_.width * view_.height;
+  if (!budget_.TryTake(bytes)) {
+    return Error{ErrorCode::kComputeQueueFull,
+                 "too many large pictures wait to be read; try again later",
+                 {}};
+  }
+  reserved_ = bytes;
   TRY(streams_.Add(this));
   added_ = true;
   Hold();
@@ -98,6 +109,7 @@ Result<v1::RenderResponse> RenderStream::Draw(int index) const {
 
 void RenderStream::OnEnd() {
   if (added_) streams_.Remove(this);
+  budget_.Return(reserved_);
 }
 
 }  // namespace posespace

@@ -3,12 +3,14 @@
 #define POSESPACE_RPC_RENDER_STREAM_H_
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 
 #include "posespace/v1/pose_service.pb.h"
 #include "rpc/compute_pool.h"
 #include "rpc/live_streams.h"
+#include "rpc/picture_budget.h"
 #include "rpc/stream_writer.h"
 #include "session/registry.h"
 
@@ -19,7 +21,7 @@ namespace posespace {
 class RenderStream final : public StreamWriter<v1::RenderResponse>, private LiveStream {
  public:
   RenderStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
-               const v1::RenderRequest& request);
+               PictureBudget& budget, const v1::RenderRequest& request);
 
  private:
   Result<void> Begin(const Registry& registry);
@@ -33,10 +35,12 @@ class RenderStream final : public StreamWriter<v1::RenderResponse>, private Live
 
   LiveStreams& streams_;
   ComputePool& pool_;
+  PictureBudget& budget_;
   const v1::RenderRequest& request_;  // gRPC keeps it for the call
   std::shared_ptr<const PoseSpace> pose_space_;
   View view_;
   bool added_ = false;
+  std::int64_t reserved_ = 0;  // of the budget: as many pictures as may wait
 
   std::mutex mutex_;
   int next_ = 0;   // the query to draw next

@@ -79,7 +79,7 @@ Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const L
 void Server::BeginDrain(std::chrono::milliseconds grace) {
   server_->GetHealthCheckService()->Shutdown();
   streams_.Drain(grace);
-  registry_.build_pool().Stop();
+  registry_.build_pool().CancelAll();
 }
 
 void Server::Shutdown(std::chrono::milliseconds patience) {

@@ -144,7 +144,9 @@ grpc::ServerUnaryReactor* SessionService::StartBuild(grpc::CallbackServerContext
   return ReplyFrom(pool_, context, "StartBuild", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
     const BuildRequest build = TRY(BuildRequestFromProto(request->options()));
-    ToProto(TRY(session->StartBuild(build, registry_.build_pool())), response->mutable_build());
+    const BuildStatus status = TRY(session->StartBuild(build, registry_.build_pool()));
+    ToProto(status, response->mutable_build());
+    response->set_attached(status.attached);
     return {};
   });
 }
@@ -160,7 +162,7 @@ grpc::ServerUnaryReactor* SessionService::CancelBuild(grpc::CallbackServerContex
   return Reply(context, "CancelBuild", [&]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
     if (const auto job = session->LatestBuild()) {
-      job->Cancel();
+      if (request->build_id().empty() || request->build_id() == job->Status().id) job->Cancel();
       ToProto(job->Status(), response->mutable_build());
     }
     return {};

@@ -27,6 +27,7 @@ struct BuildStatus {
   std::int64_t sequence = 0;                    // >= 1; grows with every change
   std::shared_ptr<const PoseSpace> pose_space;  // when succeeded
   std::optional<Error> error;                   // when failed or cancelled
+  bool attached = false;  // of StartBuild's answer: the build was there already
 
   bool ended() const { return state > BuildState::kRunning; }
 };

@@ -93,7 +93,7 @@ Result<void> BuildPool::Submit(std::shared_ptr<BuildJob> job) {
   return {};
 }
 
-void BuildPool::Stop() {
+void BuildPool::CancelAll() {
   std::vector<std::shared_ptr<BuildJob>> jobs;
   {
     const std::lock_guard lock(state_->mutex);
@@ -104,7 +104,10 @@ void BuildPool::Stop() {
     state_->changed.notify_all();
   }
   for (const auto& job : jobs) job->Cancel();
+}
 
+void BuildPool::Stop() {
+  CancelAll();
   const std::lock_guard lock(state_->joining);
   for (std::thread& worker : state_->workers) worker.join();
   state_->workers.clear();

@@ -24,7 +24,10 @@ class BuildPool {
   // Fails with kBuildQueueFull, kDraining (after Stop).
   Result<void> Submit(std::shared_ptr<BuildJob> job);
 
-  // Cancels everything, takes no more, and waits for the workers.  Not from a worker: neither from
+  // Cancels everything and takes no more; returns at once.
+  void CancelAll();
+
+  // CancelAll, then waits for the workers.  Not from a worker: neither from
   // a job's Done nor from a listener.
   void Stop();
 

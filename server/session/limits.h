@@ -22,6 +22,7 @@ struct Limits {
   // Affect how much runs at once.
   int max_sessions = 10'000;
   int max_streams = 10'000;
+  std::int64_t max_picture_bytes = 512 << 20;  // of all rendered pictures not yet read
   int max_stream_slots = 64;
   int max_stream_items = 256;  // of one Play frame
   int max_in_flight = 4;       // Play frames read ahead

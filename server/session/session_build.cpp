@@ -54,7 +54,8 @@ Result<BuildStatus> Session::StartBuild(const BuildRequest& request, BuildPool& 
   const auto built = state_->BuiltOrNull();
   const std::string revision = RevisionDigest(inputs);
   if (previous != nullptr && previous->revision() == revision && !previous->cancelled()) {
-    const BuildStatus status = previous->Status();
+    BuildStatus status = previous->Status();
+    status.attached = true;
     const bool current = built != nullptr && built->revision() == revision;
     if (!status.ended() || (status.state == BuildState::kSucceeded && current)) return status;
   }
@@ -118,9 +119,6 @@ Result<void> Session::CloseIf(const std::string& etag) {
   return {};
 }
 
-bool Session::closed() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->closed;
-}
+bool Session::closed() const { return state_->closed; }
 
 }  // namespace posespace

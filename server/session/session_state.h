@@ -2,6 +2,7 @@
 #ifndef POSESPACE_SESSION_SESSION_STATE_H_
 #define POSESPACE_SESSION_SESSION_STATE_H_
 
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 
@@ -38,7 +39,8 @@ struct Session::State {
   std::int64_t placements_version = 0;  // grows when placements are set
   std::int64_t version = 0;             // grows with every change
   std::chrono::system_clock::time_point updated;
-  bool closed = false;
+
+  std::atomic<bool> closed{false};  // set under mutex, so that no edit comes after it
 
   mutable std::mutex reading;
   // Guarded by reading:

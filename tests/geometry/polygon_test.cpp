@@ -94,6 +94,14 @@ TEST(FindCrossing, AgreesWithTryingAllPairs) {
   EXPECT_LT(simple, 1800);
 }
 
+TEST(FindCrossing, FindsNothingOnceCancelled) {
+  Progress cancelled;
+  cancelled.Cancel();
+  EXPECT_FALSE(FindCrossing(PointsOf("0 0, 2 2, 2 0, 0 2"), &cancelled).has_value());
+  const Progress running;
+  EXPECT_TRUE(FindCrossing(PointsOf("0 0, 2 2, 2 0, 0 2"), &running).has_value());
+}
+
 TEST(Locate, TellsInsideFromOnFromOutside) {
   const Points ring = PointsOf("0 0, 4 0, 4 4, 2 1, 0 4");
   EXPECT_EQ(Locate({1, 1}, ring), 1);

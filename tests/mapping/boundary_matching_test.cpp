@@ -169,6 +169,17 @@ TEST(MatchBoundaries, StopsWhenCancelledBeforeOrOnTheWay) {
   }
 }
 
+TEST(MatchBoundaries, RefusesOutlinesOfMorePointsThanItCanMatch) {
+  std::vector<MatchingShape> shapes = ShapesOf({Figure(80, 5, 100.0, 1), Figure(80, 5, 100.0, 2)});
+  shapes[1].name = "long";
+  shapes[1].outline = Points::Random(100'001, 2);
+  const auto result = MatchBoundaries(shapes);
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().code, ErrorCode::kOutlineTooLong);
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("'long' 100001"));
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("100000"));
+}
+
 TEST(MatchBoundaries, FindsTheKnownCorrespondenceOfLetterMasters) {
   const std::filesystem::path folder = ShapesFolder();
   if (folder.empty()) GTEST_SKIP() << "the development drawings are not beside the project";

@@ -126,6 +126,26 @@ TEST_F(BuildTest, CancellingEndsItForEveryWatcher) {
   EXPECT_EQ(event.build().error().reason(), "CANCELLED");
 }
 
+TEST_F(BuildTest, SaysWhetherABuildWasThereAlreadyAndCancelsOnlyTheOneNamed) {
+  DrawMany("many");
+  v1::StartBuildResponse first, second;
+  ASSERT_THAT(client_.Call(&SessionStub::StartBuild, Fine("many"), &first), Succeeds());
+  ASSERT_THAT(client_.Call(&SessionStub::StartBuild, Fine("many"), &second), Succeeds());
+  EXPECT_FALSE(first.attached());
+  EXPECT_TRUE(second.attached());
+  EXPECT_EQ(first.build().id(), second.build().id());
+
+  v1::CancelBuildRequest cancel;
+  cancel.set_session_id("many");
+  cancel.set_build_id("another");
+  v1::CancelBuildResponse response;
+  ASSERT_THAT(client_.Call(&SessionStub::CancelBuild, cancel, &response), Succeeds());
+  EXPECT_NE(response.build().state(), v1::BUILD_STATE_CANCELLED);
+  cancel.set_build_id(first.build().id());
+  ASSERT_THAT(client_.Call(&SessionStub::CancelBuild, cancel, &response), Succeeds());
+  EXPECT_EQ(Watch("many").back().state(), v1::BUILD_STATE_CANCELLED);
+}
+
 TEST_F(BuildTest, CancellingWithoutABuildHasNoEffect) {
   Create("tux");
   v1::CancelBuildRequest cancel;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <limits>
 #include <thread>
 
@@ -12,6 +13,8 @@ using ::testing::ElementsAre;
 
 class PoseServiceTest : public ServiceTest {
  protected:
+  using ServiceTest::ServiceTest;
+
   v1::Mesh Mesh(const std::string& session) {
     v1::GetMeshRequest request;
     request.set_session_id(session);
@@ -314,6 +317,48 @@ TEST_F(PoseServiceTest, RefusesToRenderBeforeTheFirstPicture) {
   request.mutable_queries()->RemoveLast();
   request.set_width(4'097);
   EXPECT_THAT(FieldsOf(outcome()), ElementsAre("width"));
+}
+
+class FewPicturesTest : public PoseServiceTest {
+ protected:
+  // One stream of 64 x 64 pictures at a time: two may wait to be read.
+  FewPicturesTest()
+      : PoseServiceTest([] {
+          Limits limits;
+          limits.max_picture_bytes = 2 * 4 * 64 * 64;
+          return limits;
+        }()) {}
+};
+
+TEST_F(FewPicturesTest, PicturesThatNobodyReadsAreBounded) {
+  Built("tux");
+  v1::RenderRequest request;
+  request.set_session_id("tux");
+  for (int k = 0; k < 256; ++k) request.add_queries()->mutable_at()->set_y(k / 256.0);
+  request.set_width(64);
+  request.set_height(64);
+  request.set_format(v1::IMAGE_FORMAT_RGBA);
+  v1::RenderResponse picture;
+  const auto context = Client::Context();
+  const auto unread = client_.poses->Render(context.get(), request);
+  ASSERT_TRUE(unread->Read(&picture));
+
+  const auto render = [&] {
+    const auto one = Client::Context();
+    const auto reader = client_.poses->Render(one.get(), request);
+    while (reader->Read(&picture)) {
+    }
+    return reader->Finish();
+  };
+  EXPECT_THAT(render(), Refuses(StatusCode::RESOURCE_EXHAUSTED, "COMPUTE_QUEUE_FULL"));
+  context->TryCancel();
+  unread->Finish();
+  grpc::Status status = render();
+  for (int k = 0; k < 1'000 && !status.ok(); ++k) {  // the server hears of the end a little later
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    status = render();
+  }
+  EXPECT_THAT(status, Succeeds());
 }
 
 TEST_F(PoseServiceTest, ReadersThatVanishStopTheDrawing) {

@@ -39,7 +39,9 @@ using ::testing::StartsWith;
 // posespaced with the given arguments; its output is kept in files of a directory of its own.
 class Program {
  public:
-  explicit Program(std::vector<std::string> arguments, std::vector<std::string> environment = {}) {
+  // `log`, if given, is the descriptor that gets stderr.
+  explicit Program(std::vector<std::string> arguments, std::vector<std::string> environment = {},
+                   int log = -1) {
     static int count = 0;
     directory_ = std::filesystem::temp_directory_path() /
                  ("posespaced-" + std::to_string(getpid()) + "-" + std::to_string(++count));
@@ -53,6 +55,7 @@ class Program {
       posix_spawn_file_actions_addopen(&actions, descriptor, (directory_ / name).c_str(),
                                        O_WRONLY | O_CREAT | O_APPEND, 0600);
     }
+    if (log >= 0) posix_spawn_file_actions_adddup2(&actions, log, 2);
     const int failure = posix_spawn(&process_, POSESPACED, &actions, nullptr,
                                     Pointers(arguments).data(), Pointers(environment).data());
     EXPECT_EQ(failure, 0);
@@ -223,6 +226,18 @@ TEST(Program, SurvivesGarbageOnItsPort) {
     close(connection);
   }
   EXPECT_TRUE(ListSessions(address).ok());
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait(), 0);
+}
+
+TEST(Program, OutlivesTheReaderOfItsLog) {
+  int log[2];
+  ASSERT_EQ(pipe2(log, O_CLOEXEC), 0);
+  Program program({"--listen", "127.0.0.1:0", "--log-level", "debug"}, {}, log[1]);
+  close(log[1]);
+  const std::string address = program.Address();
+  close(log[0]);
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(ListSessions(address).ok());
   program.Signal(SIGTERM);
   EXPECT_EQ(program.Wait(), 0);
 }
