@@ -184,6 +184,84 @@ def test_a_service_that_ends_in_order_tells_its_streams(own_server, own_client):
                 time.sleep(0.005)
 
 
+@pytest.fixture
+def long_grace() -> Iterator[posespace.LocalServer]:
+    """A service whose streams may take a minute to end."""
+    with posespace.serve_locally(
+        flags=["--drain-grace", "60000"], stop_timeout=60.0 + SLACK
+    ) as server:
+        yield server
+
+
+def test_an_idle_player_does_not_hold_a_service_that_ends(long_grace):
+    with posespace.connect(long_grace.address) as client:
+        session = make_walk(client)
+        with session.play() as player:
+            list(player.frames([(0, 0)]))
+            with within(SLACK):
+                long_grace.stop()
+            with pytest.raises(posespace.Unavailable) as refusal:
+                list(player.frames([(0, 0)]))
+            assert refusal.value.reason == "DRAINING"
+
+
+def test_a_player_at_work_is_answered_what_was_under_way_when_the_service_ends(long_grace):
+    with posespace.connect(long_grace.address) as client:
+        session = make_walk(client)
+        with session.play() as player:
+            os.kill(long_grace.pid, signal.SIGTERM)
+            with pytest.raises(posespace.Unavailable) as refusal:
+                while True:
+                    answers = player.tick([player.avatar.item(at=(0, 0))] * 8)
+                    assert all(isinstance(answer, posespace.Frame) for answer in answers)
+            assert refusal.value.reason == "DRAINING"
+
+
+# Full queues.
+
+
+def test_many_callers_at_once_are_all_served(server):
+    failed: list[posespace.Error] = []
+    client = posespace.connect(server.address, timeout=60.0)
+
+    def work() -> None:
+        try:
+            session = client.create_session()
+            session.put_shape("sharp", polygon=star())
+            session.put_shape("turned", polygon=star(turn=0.3))
+            session.build(target_edge_length=0.3)
+            session.blend(at=(0.5, 0))
+            session.render(at=(0.5, 0), size=(64, 64))
+            session.delete()
+        except posespace.Error as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=work) for _ in range(100)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    client.close()
+    assert not failed
+
+
+def test_a_full_build_queue_is_waited_for_until_the_timeout():
+    with (
+        posespace.serve_locally(flags=["--concurrent-builds", "1", "--build-queue", "1"]) as server,
+        posespace.connect(server.address, timeout=TIMEOUT) as client,
+    ):
+        running, queued, third = (slow_session(client) for _ in range(3))
+        running.start_build(**SLOW)
+        while running.state().build.state == "queued":
+            time.sleep(0.02)
+        queued.start_build(**SLOW)
+        with pytest.raises(posespace.ResourceExhausted) as refusal:
+            third.build(timeout=0.5, **SLOW)
+        assert refusal.value.reason == "BUILD_QUEUE_FULL"
+        threading.Timer(1.0, queued.cancel_build).start()
+        assert third.build(tolerance=0.1, target_edge_length=0.3).revision
+
+
 # Broken connections.
 
 
@@ -293,12 +371,52 @@ def test_another_build_replaces_a_running_one(client):
 
 
 def test_a_cancelled_build_leaves_the_built_pose_space(client):
-    session = make_walk(client)
-    revision = session.state().revision
-    session.start_build(target_edge_length=0.02)
+    session = slow_session(client)
+    revision = session.build(tolerance=0.1, target_edge_length=0.3).revision
+    session.start_build(**SLOW)
     session.cancel_build()
-    ended(session)
-    assert session.blend(at=(0.2, 0.2)).revision in (revision, session.state().revision)
+    assert ended(session).state == "cancelled"
+    assert session.state().revision == revision
+    assert session.blend(at=(0.2, 0.2)).revision == revision
+    session.delete()
+
+
+def test_the_timeout_of_one_caller_leaves_the_build_of_another(client):
+    session = slow_session(client)
+    started = session.start_build(**SLOW)
+    with pytest.raises(posespace.DeadlineExceeded, match="another caller's build goes on"):
+        session.build(timeout=0.1, **SLOW)
+    assert session.state().build.id == started.id
+    assert ended(session).state == "succeeded"
+    session.delete()
+
+
+def test_ctrl_c_of_one_caller_leaves_the_build_of_another(client):
+    session = slow_session(client)
+    started = session.start_build(**SLOW)
+
+    def interrupt(stage: str, fraction: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        session.build(on_progress=interrupt, **SLOW)
+    assert session.state().build.id == started.id
+    assert ended(session).state == "succeeded"
+    session.delete()
+
+
+def test_a_caller_that_gives_up_leaves_the_build_that_replaced_its_own(client):
+    session = slow_session(client)
+    replacing = []
+
+    def replace(stage: str, fraction: float) -> None:
+        replacing.append(session.start_build(tolerance=0.001, target_edge_length=0.025))
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        session.build(on_progress=replace, **SLOW)
+    assert session.state().build.id == replacing[0].id
+    assert ended(session).state == "succeeded"
     session.delete()
 
 

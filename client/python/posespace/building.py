@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections.abc import Callable, Iterator
 
@@ -27,10 +28,11 @@ def build_and_wait(
     """Starts a build and follows it to its end; see Session.build."""
     deadline = None if timeout is None else time.monotonic() + timeout
     session_id = request.session_id
-    build_id = channel.call(channel.sessions.StartBuild, request).build.id
+    patience = math.inf if timeout is None else timeout  # a full queue is waited for
+    started = channel.call(channel.sessions.StartBuild, request, patience=patience)
     try:
         for build in _changes(channel, session_id, deadline):
-            if build.id != build_id:
+            if build.id != started.build.id:
                 raise Cancelled(
                     f"another build of session '{session_id}' has replaced this one",
                     reason="CANCELLED",
@@ -46,19 +48,27 @@ def build_and_wait(
     except DeadlineExceeded as error:
         if error.reason:  # the service's own limit
             raise
-        _cancel(channel, session_id)
+        _cancel(channel, session_id, started)
+        outcome = "another caller's build goes on" if started.attached else "its build is cancelled"
         raise DeadlineExceeded(
-            f"session '{session_id}' was not built within {timeout:g} s; its build is cancelled"
+            f"session '{session_id}' was not built within {timeout:g} s; {outcome}"
         ) from None
     except Error:
         raise
     except BaseException:  # Ctrl-C, or what on_progress raised
-        _cancel(channel, session_id)
+        _cancel(channel, session_id, started)
         raise
 
 
-def _cancel(channel: Channel, session_id: str) -> None:
-    request = session_service_pb2.CancelBuildRequest(session_id=session_id)
+def _cancel(
+    channel: Channel, session_id: str, started: session_service_pb2.StartBuildResponse
+) -> None:
+    """Stops a build that was started here; others may wait for one that was there already."""
+    if started.attached:
+        return
+    request = session_service_pb2.CancelBuildRequest(
+        session_id=session_id, build_id=started.build.id
+    )
     with contextlib.suppress(Error):
         channel.call(channel.sessions.CancelBuild, request)
 
