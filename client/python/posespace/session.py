@@ -3,21 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from posespace import messages
-from posespace.building import OnProgress, build_and_wait
+from posespace.authoring import Authoring
 from posespace.channel import Channel
-from posespace.errors import Error, InvalidArgument, NotFound
+from posespace.errors import Error, NotFound
 from posespace.messages import BlendMethod, Place, ShearLimit
-from posespace.pictures import Picture, decode_png, picture_bytes
+from posespace.pictures import decode_png
 from posespace.player import Player
-from posespace.results import Build, BuildReport, Frame, Mesh, SessionState, Shape
-from posespace.v1 import pose_service_pb2, session_service_pb2
+from posespace.results import Frame, Mesh
+from posespace.v1 import pose_service_pb2
 
 _BATCH = 256  # queries in one message, the service's limit unless it was told otherwise
 _REBUILDS = 5  # that may overtake one call before it gives up
@@ -28,7 +28,7 @@ _OTHER_DRAWINGS = ("SHAPE_NOT_FOUND", "WEIGHTS_COUNT_MISMATCH")
 T = TypeVar("T")
 
 
-class Session:
+class Session(Authoring):
     """A session of the service; made by Client.create_session and Client.session.
 
         session = client.create_session("tux")
@@ -47,223 +47,8 @@ class Session:
     """
 
     def __init__(self, channel: Channel, session_id: str) -> None:
-        self._channel = channel
-        self._id = session_id
+        super().__init__(channel, session_id)
         self._built: tuple[str, list[str]] | None = None  # a revision, and its drawings in order
-
-    @property
-    def id(self) -> str:
-        """The id it was made with, or that the service chose."""
-        return self._id
-
-    @property
-    def shape_ids(self) -> list[str]:
-        """The drawings in the order of upload, which is the order of weights."""
-        return self.state().shape_ids
-
-    def __repr__(self) -> str:
-        return f"<posespace.Session {self._id!r} at {self._channel.address}>"
-
-    # What the session holds.
-
-    def state(self) -> SessionState:
-        """session.state().placements, .correspondences, .etag, .revision, .build, ..."""
-        request = messages.make(session_service_pb2.GetSessionRequest, session_id=self._id)
-        return messages.session_state(
-            self._channel.call(self._channel.sessions.GetSession, request).session
-        )
-
-    def delete(self, *, etag: str = "") -> None:
-        """Forgets the session, its drawings and its pose space; a running build is cancelled.
-
-        With `etag`, only when the session still has it; else Conflict.
-        """
-        self._channel.call(
-            self._channel.sessions.DeleteSession,
-            messages.make(session_service_pb2.DeleteSessionRequest, session_id=self._id, etag=etag),
-        )
-
-    def put_shape(
-        self,
-        shape_id: str,
-        *,
-        image: Picture | None = None,
-        foreground: Literal["alpha"] = "alpha",
-        threshold: int | None = None,
-        polygon: ArrayLike | None = None,
-        holes: Sequence[ArrayLike] = (),
-        texture: Picture | None = None,
-        replace: bool = False,
-    ) -> Shape:
-        """Adds a drawing and answers how it was understood.
-
-            session.put_shape("stand", image="stand.png")
-            session.put_shape("jump", image=pixels)             # (H, W, 3 or 4) uint8, or PNG bytes
-            session.put_shape("star", polygon=ring, holes=[ring])
-
-        image       Path, bytes of a PNG, or array with straight alpha.
-        foreground  Which pixels are the drawing: "alpha", those whose alpha reaches the threshold.
-        threshold   1 to 255; 128 by default.
-        polygon     Ring (K, 2) in drawing pixels, simple, either orientation; `holes` likewise.
-        texture     Picture whose pixels are the polygon's drawing pixels; one colour without it.
-        replace     Overwrite a drawing of the same id.
-
-        Raises InvalidDrawing (the message says why no outline can be made of it), AlreadyExists
-        when the id has another drawing, ResourceExhausted when the picture is too large to send.
-        """
-        request = messages.make(
-            session_service_pb2.PutShapeRequest,
-            session_id=self._id,
-            shape_id=shape_id,
-            replace=replace,
-        )
-        if image is not None and polygon is not None:
-            raise InvalidArgument(
-                f"shape '{shape_id}': give either image= or polygon=", reason="INVALID_OPTION"
-            )
-        if image is not None:
-            source = messages.make(
-                session_service_pb2.ImageSource,
-                foreground=messages.foreground(foreground),
-                threshold=threshold,
-            )
-            with messages.argument("image", image):
-                source.data = picture_bytes(image, shape_id)
-            request.image.CopyFrom(source)
-        if polygon is not None:
-            what = f"shape '{shape_id}': "
-            request.polygon.outer.CopyFrom(messages.ring(polygon, what + "polygon"))
-            request.polygon.holes.extend(messages.ring(hole, what + "a hole") for hole in holes)
-            if texture is not None:
-                with messages.argument("texture", texture):
-                    request.polygon.texture = picture_bytes(texture, shape_id)
-        return messages.shape(self._channel.call(self._channel.sessions.PutShape, request).shape)
-
-    def shape(self, shape_id: str) -> Shape:
-        """A drawing's outline and warnings.  Raises NotFound."""
-        request = messages.make(
-            session_service_pb2.GetShapeRequest, session_id=self._id, shape_id=shape_id
-        )
-        return messages.shape(self._channel.call(self._channel.sessions.GetShape, request).shape)
-
-    def shapes(self) -> list[Shape]:
-        """All drawings, in the order of upload."""
-        request = session_service_pb2.ListShapesRequest(session_id=self._id)
-        listed = self._channel.call(self._channel.sessions.ListShapes, request)
-        return [messages.shape(message) for message in listed.shapes]
-
-    def delete_shape(self, shape_id: str) -> None:
-        """Removes a drawing, its marks and its placement.  Raises NotFound."""
-        self._channel.call(
-            self._channel.sessions.DeleteShape,
-            messages.make(
-                session_service_pb2.DeleteShapeRequest, session_id=self._id, shape_id=shape_id
-            ),
-        )
-
-    def set_correspondences(
-        self, tuples: Iterable[Mapping[str, Place]], *, etag: str = ""
-    ) -> SessionState:
-        """Replaces all marked places; they take effect with the next build.
-
-            session.set_correspondences([{"stand": (40, 12), "jump": (52, 9)}, ...])
-
-        Each tuple marks one place of the character in any of the drawings, in drawing pixels.
-
-        Raises InvalidArgument with every fault in `fields` (LANDMARK_OFF_OUTLINE,
-        LANDMARKS_OUT_OF_ORDER, ...), NotFound, and Conflict when `etag` is given and outdated.
-        """
-        with messages.argument("tuples", tuples):
-            marks = [messages.correspondence(points) for points in tuples]
-        request = messages.make(
-            session_service_pb2.SetCorrespondencesRequest,
-            session_id=self._id,
-            tuples=marks,
-            etag=etag,
-        )
-        changed = self._channel.call(self._channel.sessions.SetCorrespondences, request)
-        return messages.session_state(changed.session)
-
-    def set_placements(self, placements: Mapping[str, Place], *, etag: str = "") -> SessionState:
-        """Places the drawings in pose space; a built session follows at once, with a new revision.
-
-            session.set_placements({"stand": (0, 0), "jump": (0, 1)})
-
-        One point for every drawing, in any unit; none at all returns to the default, the unit
-        circle in the order of upload.
-
-        Raises InvalidArgument (PLACEMENTS_COINCIDE, PLACEMENT_NOT_FINITE), NotFound, and Conflict
-        when `etag` is given and outdated.
-        """
-        with messages.argument("placements", placements):
-            placed = [messages.placement(shape_id, at) for shape_id, at in placements.items()]
-        request = messages.make(
-            session_service_pb2.SetPlacementsRequest,
-            session_id=self._id,
-            placements=placed,
-            etag=etag,
-        )
-        changed = self._channel.call(self._channel.sessions.SetPlacements, request)
-        return messages.session_state(changed.session)
-
-    # Building.
-
-    def build(
-        self,
-        *,
-        tolerance: float | None = None,
-        target_edge_length: float | None = None,
-        on_progress: OnProgress | None = None,
-        timeout: float | None = None,
-    ) -> BuildReport:
-        """Builds the pose space and waits until it is there.
-
-            report = session.build(on_progress=lambda stage, fraction: print(stage, fraction))
-
-        tolerance           Farthest the mesh outline may lie from the drawing's, relative to the
-                            square root of its area, 0.001 to 0.2; 0.03 by default.
-        target_edge_length  Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
-        on_progress         Called with the stage's name and the fraction done, which never falls.
-        timeout             Seconds to wait; by default as long as the service lets a build take.
-
-        With the same inputs as a running or finished build it attaches to that one; else it starts
-        one, and waits for its place when too many builds are queued.  Ctrl-C, an exception in
-        on_progress and the timeout cancel a build that this call started, and only that.  A dropped
-        connection does not: watching goes on once the service answers again within the client's
-        timeout.
-
-        Raises NotBuilt (NO_SHAPES) without drawings, InvalidArgument when drawings or marks
-        contradict each other, Cancelled when somebody cancels or replaces the build,
-        ResourceExhausted when the queue stays full for `timeout`, DeadlineExceeded after it.
-        """
-        request = self._build_request(tolerance, target_edge_length)
-        return build_and_wait(self._channel, request, on_progress, timeout)
-
-    def start_build(
-        self, *, tolerance: float | None = None, target_edge_length: float | None = None
-    ) -> Build:
-        """Starts building as `build` does and returns at once; `state().build` says how it goes."""
-        request = self._build_request(tolerance, target_edge_length)
-        return messages.build(self._channel.call(self._channel.sessions.StartBuild, request).build)
-
-    def cancel_build(self) -> None:
-        """Stops the running build; without one it has no effect."""
-        self._channel.call(
-            self._channel.sessions.CancelBuild,
-            session_service_pb2.CancelBuildRequest(session_id=self._id),
-        )
-
-    def _build_request(
-        self, tolerance: float | None, target_edge_length: float | None
-    ) -> session_service_pb2.StartBuildRequest:
-        options = messages.make(
-            session_service_pb2.BuildOptions,
-            tolerance=tolerance,
-            target_edge_length=target_edge_length,
-        )
-        return session_service_pb2.StartBuildRequest(session_id=self._id, options=options)
-
-    # The built pose space.
 
     def mesh(self) -> Mesh:
         """The triangles and the vertices of every drawing.  Raises NotBuilt."""
