@@ -35,6 +35,7 @@ install_packages() {
 build() {
   local preset=$1
   shift
+  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1  # clones elsewhere share what was compiled
   if [ ! -f "build/$preset/build.ninja" ]; then
     say "Configuring build/$preset"
     cmake --preset "$preset" >"/tmp/posespace-configure.$$" 2>&1 ||
