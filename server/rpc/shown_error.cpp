@@ -4,9 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <random>
 
 #include "ops/logging.h"
+#include "session/random_id.h"
 
 namespace posespace {
 namespace {
@@ -31,11 +31,6 @@ std::size_t CharacterLength(std::string_view text) {
     return overlong || beyond ? 0 : 4;
   }
   return 0;
-}
-
-std::string RandomId() {
-  std::random_device random;
-  return fmt::format("{:08x}{:08x}", random(), random());
 }
 
 }  // namespace
