@@ -125,6 +125,7 @@ Result<ShapeSource> SourceFromProto(const v1::PutShapeRequest& request) {
       return ImageFromProto(request.image());
     case v1::PutShapeRequest::kPolygon:
       return PolygonFromProto(request.polygon());
+    case v1::PutShapeRequest::kSvg:
     case v1::PutShapeRequest::SOURCE_NOT_SET:
       break;
   }
