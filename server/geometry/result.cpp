@@ -49,6 +49,10 @@ std::string_view ReasonName(ErrorCode code) {
       return "WEIGHTS_COUNT_MISMATCH";
     case ErrorCode::kTooManyQueries:
       return "TOO_MANY_QUERIES";
+    case ErrorCode::kPathInvalid:
+      return "PATH_INVALID";
+    case ErrorCode::kTooManyFrames:
+      return "TOO_MANY_FRAMES";
     case ErrorCode::kInvalidId:
       return "INVALID_ID";
     case ErrorCode::kInvalidOption:
@@ -95,6 +99,16 @@ std::string_view ReasonName(ErrorCode code) {
       return "INTERNAL";
   }
   return "INTERNAL";
+}
+
+Error ErrorAt(ErrorCode code, std::string field, const std::string& description) {
+  const std::string message = field + " " + description;
+  return Error{code, message, {{std::move(field), description}}};
+}
+
+Error Under(const std::string& outer, Error error) {
+  for (Violation& violation : error.where) violation.field = outer + "." + violation.field;
+  return error;
 }
 
 }  // namespace posespace

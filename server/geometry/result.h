@@ -39,6 +39,8 @@ enum class ErrorCode {
   kWeightsSumNotOne,
   kWeightsCountMismatch,
   kTooManyQueries,
+  kPathInvalid,  // waypoints without order in time, or without length
+  kTooManyFrames,
   // Names and states.
   kInvalidId,
   kInvalidOption,
@@ -80,6 +82,12 @@ struct Error {
   std::string message;
   std::vector<Violation> where;  // every place at fault, when places are at fault
 };
+
+// A refusal of one field's value: the message is the field and what is wrong with it.
+Error ErrorAt(ErrorCode code, std::string field, const std::string& description);
+
+// The same error, its fields inside of another: "at" under "queries[3]" is "queries[3].at".
+Error Under(const std::string& outer, Error error);
 
 // A value or the reason why there is none; the surface of std::expected<T, Error>.
 template <typename T>

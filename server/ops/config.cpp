@@ -53,6 +53,10 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
   AddLimit(app, accepted, "--max-mesh-vertices", limits.max_mesh_vertices, "vertices of one mesh");
   AddLimit(app, accepted, "--max-queries", limits.max_queries, "queries of one Blend or Render");
   AddLimit(app, accepted, "--max-render-side", limits.max_render_side, "pixels across or down");
+  AddLimit(app, accepted, "--max-animation-frames", limits.max_animation_frames,
+           "frames of one Animate");
+  AddLimit(app, accepted, "--max-render-frames", limits.max_render_frames,
+           "pictures of one Render along a path");
   const std::string running = "Limits on how much runs at once";
   AddLimit(app, running, "--max-sessions", limits.max_sessions, "sessions");
   AddLimit(app, running, "--max-streams", limits.max_streams, "open streams");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drawing/decode.h"
+#include "rpc/animate_stream.h"
 #include "rpc/call.h"
 #include "rpc/convert.h"
 #include "rpc/play_reactor.h"
@@ -86,6 +87,11 @@ grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* contex
 grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* PoseService::Play(
     grpc::CallbackServerContext* /*context*/) {
   return new PlayReactor(registry_, streams_, blend_pool_);
+}
+
+grpc::ServerWriteReactor<v1::AnimateResponse>* PoseService::Animate(
+    grpc::CallbackServerContext* /*context*/, const v1::AnimateRequest* request) {
+  return new AnimateStream(registry_, streams_, blend_pool_, *request);
 }
 
 grpc::ServerWriteReactor<v1::RenderResponse>* PoseService::Render(

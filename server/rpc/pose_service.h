@@ -33,6 +33,8 @@ class PoseService final : public v1::PoseService::CallbackService {
                                   v1::BlendResponse* response) override;
   grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* Play(
       grpc::CallbackServerContext* context) override;
+  grpc::ServerWriteReactor<v1::AnimateResponse>* Animate(
+      grpc::CallbackServerContext* context, const v1::AnimateRequest* request) override;
   grpc::ServerWriteReactor<v1::RenderResponse>* Render(grpc::CallbackServerContext* context,
                                                        const v1::RenderRequest* request) override;
 

@@ -11,10 +11,6 @@
 namespace posespace {
 namespace {
 
-Error Refusal(ErrorCode code, std::string field, std::string description) {
-  return Error{code, field + " " + description, {{field, description}}};
-}
-
 Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
   BlendOptions blend;
   switch (options.method()) {
@@ -29,7 +25,7 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
       blend.method = BlendMethod::kPaper;
       break;
     default:
-      return Refusal(ErrorCode::kInvalidOption, "options.method",
+      return ErrorAt(ErrorCode::kInvalidOption, "options.method",
                      "is " + std::to_string(options.method()) + ", which is not known here");
   }
   switch (options.shear_limit()) {
@@ -47,12 +43,12 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
       blend.shear_limit = ShearLimit::kOff;
       break;
     default:
-      return Refusal(ErrorCode::kInvalidOption, "options.shear_limit",
+      return ErrorAt(ErrorCode::kInvalidOption, "options.shear_limit",
                      "is " + std::to_string(options.shear_limit()) + ", which is not known here");
   }
   if (options.has_refits()) blend.refits = options.refits();
   if (blend.refits < 0 || blend.refits > 3) {
-    return Refusal(ErrorCode::kInvalidOption, "options.refits",
+    return ErrorAt(ErrorCode::kInvalidOption, "options.refits",
                    "is " + std::to_string(blend.refits) + ", not 0 to 3");
   }
   return blend;
@@ -65,7 +61,7 @@ Result<Query> QueryFromProto(const v1::Query& query) {
   switch (query.position_case()) {
     case v1::Query::kAt: {
       const Point at(query.at().x(), query.at().y());
-      if (!at.allFinite()) return Refusal(ErrorCode::kPoseNotFinite, "at", "is not finite");
+      if (!at.allFinite()) return ErrorAt(ErrorCode::kPoseNotFinite, "at", "is not finite");
       result.position = at;
       break;
     }
@@ -73,27 +69,27 @@ Result<Query> QueryFromProto(const v1::Query& query) {
       const auto& values = query.weights().values();
       Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
       if (!weights.allFinite()) {
-        return Refusal(ErrorCode::kWeightsNotFinite, "weights", "are not all finite");
+        return ErrorAt(ErrorCode::kWeightsNotFinite, "weights", "are not all finite");
       }
       result.position = std::move(weights);
       break;
     }
     case v1::Query::POSITION_NOT_SET:
-      return Refusal(ErrorCode::kInvalidOption, "position", "is missing: give at or weights");
+      return ErrorAt(ErrorCode::kInvalidOption, "position", "is missing: give at or weights");
   }
   result.options = TRY(BlendOptionsFromProto(query.options()));
   result.sigma = query.options().sigma();
   if (!(result.sigma >= 0.0 && result.sigma <= 1.0)) {
-    return Refusal(ErrorCode::kInvalidOption, "options.sigma",
+    return ErrorAt(ErrorCode::kInvalidOption, "options.sigma",
                    "is " + std::to_string(result.sigma) + ", not 0 to 1");
   }
   return result;
 }
 
 Result<void> CheckQueryCount(int count, int most) {
-  if (count == 0) return Refusal(ErrorCode::kInvalidOption, "queries", "is empty");
+  if (count == 0) return ErrorAt(ErrorCode::kInvalidOption, "queries", "is empty");
   if (count <= most) return {};
-  return Refusal(
+  return ErrorAt(
       ErrorCode::kTooManyQueries, "queries",
       "has " + std::to_string(count) + " entries; at most " + std::to_string(most) + " are taken");
 }
@@ -118,9 +114,8 @@ Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
   if (error.where.empty()) {
     error.where.push_back({query.has_weights() ? "weights" : "at", error.message});
   }
-  for (Violation& violation : error.where) violation.field = field + "." + violation.field;
   error.message = field + ": " + error.message;
-  return error;
+  return Under(field, std::move(error));
 }
 
 double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query,
@@ -155,13 +150,13 @@ Result<View> ViewFromProto(const v1::RenderRequest& request, const PoseSpace& po
   for (const auto& [field, side] :
        {std::pair("width", request.width()), std::pair("height", request.height())}) {
     if (side < 1 || side > max_side) {
-      return Refusal(ErrorCode::kInvalidOption, field,
+      return ErrorAt(ErrorCode::kInvalidOption, field,
                      "is " + std::to_string(side) + ", not 1 to " + std::to_string(max_side));
     }
   }
   if (request.format() != v1::IMAGE_FORMAT_UNSPECIFIED &&
       request.format() != v1::IMAGE_FORMAT_PNG && request.format() != v1::IMAGE_FORMAT_RGBA) {
-    return Refusal(ErrorCode::kInvalidOption, "format",
+    return ErrorAt(ErrorCode::kInvalidOption, "format",
                    "is " + std::to_string(request.format()) + ", which is not known here");
   }
   if (!request.has_view()) return pose_space.DefaultView(request.width(), request.height());
@@ -175,7 +170,7 @@ Result<View> ViewFromProto(const v1::RenderRequest& request, const PoseSpace& po
                       low.cwiseAbs().maxCoeff() <= kFarthest &&
                       high.cwiseAbs().maxCoeff() <= kFarthest;
   if (!usable || !low.allFinite() || !high.allFinite()) {
-    return Refusal(ErrorCode::kInvalidOption, "view",
+    return ErrorAt(ErrorCode::kInvalidOption, "view",
                    "is not a box with finite corners and a size greater than 0");
   }
   return FitView(low, high, request.width(), request.height());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/render_stream.h"
 
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,15 +10,14 @@
 namespace posespace {
 namespace {
 
-constexpr int kAhead = 2;
+constexpr int kAhead = 2;  // pictures
+constexpr int kTurn = 1;
 
 }  // namespace
 
 RenderStream::RenderStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
                            PictureBudget& budget, const v1::RenderRequest& request)
-    : StreamWriter(Call("Render")),
-      streams_(streams),
-      pool_(pool),
+    : SequenceStream(Call("Render"), streams, pool, kAhead, kTurn),
       budget_(budget),
       request_(request) {
   if (auto begun = Guarded([&] { return Begin(registry); }); !begun) Close(std::move(begun));
@@ -27,10 +25,19 @@ RenderStream::RenderStream(const Registry& registry, LiveStreams& streams, Compu
 }
 
 Result<void> RenderStream::Begin(const Registry& registry) {
+  const Limits& limits = registry.limits();
   const auto session = TRY(registry.Find(request_.session_id()));
-  TRY(CheckQueryCount(request_.queries_size(), registry.limits().max_queries));
+  if (request_.has_animation() && request_.queries_size() > 0) {
+    return ErrorAt(ErrorCode::kInvalidOption, "animation", "is given beside queries");
+  }
+  if (!request_.has_animation()) {
+    TRY(CheckQueryCount(request_.queries_size(), limits.max_queries));
+  }
   pose_space_ = TRY(session->Built());
-  view_ = TRY(ViewFromProto(request_, *pose_space_, registry.limits().max_render_side));
+  view_ = TRY(ViewFromProto(request_, *pose_space_, limits.max_render_side));
+  if (request_.has_animation()) {
+    frames_ = TRY(AnimationFrames::From(request_.animation(), limits.max_render_frames));
+  }
   // Queries are checked before the first picture, so that a bad one costs nothing.
   for (int k = 0; k < request_.queries_size(); ++k) {
     TRY(BlendQuery(*pose_space_, request_.queries(k), QueryField(k), /*weights_only=*/true));
@@ -42,56 +49,13 @@ Result<void> RenderStream::Begin(const Registry& registry) {
                  {}};
   }
   reserved_ = bytes;
-  TRY(streams_.Add(this));
-  added_ = true;
-  Hold();
-  if (pool_.TryPost([this] { DrawNext(); })) return {};
-  Release();
-  return Error{ErrorCode::kComputeQueueFull, "too much work is waiting; try again later", {}};
+  return Start(frames_ ? frames_->count() : request_.queries_size());
 }
 
-// On the pool; the call is held, and nobody else draws.
-void RenderStream::DrawNext() {
-  if (!closing()) {
-    auto picture = Guarded([&] { return Draw(next_); });
-    if (picture) {
-      Write(std::move(*picture));
-    } else {
-      Close(std::move(picture).error());
-    }
-  }
-  bool last = false;
-  {
-    const std::scoped_lock lock(mutex_);
-    drawing_ = false;
-    ++ahead_;
-    last = ++next_ == request_.queries_size();
-  }
-  last ? Close({}) : Continue();
-  Release();
-}
-
-void RenderStream::Continue() {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (drawing_ || ahead_ >= kAhead || next_ == request_.queries_size() || closing()) return;
-    drawing_ = true;
-  }
-  Hold();
-  pool_.Post([this] { DrawNext(); });
-}
-
-void RenderStream::OnWritten(std::size_t /*waiting*/) {
-  {
-    const std::scoped_lock lock(mutex_);
-    --ahead_;
-  }
-  Continue();
-}
-
-Result<v1::RenderResponse> RenderStream::Draw(int index) const {
-  Frame frame = TRY(BlendQuery(*pose_space_, request_.queries(index), QueryField(index),
-                               /*weights_only=*/false));
+Result<v1::RenderResponse> RenderStream::Make(int index) {
+  Frame frame = frames_ ? TRY(pose_space_->Blend(frames_->At(index)))
+                        : TRY(BlendQuery(*pose_space_, request_.queries(index), QueryField(index),
+                                         /*weights_only=*/false));
   const Image image = pose_space_->Render(frame, view_);
   v1::RenderResponse response;
   response.set_index(index);
@@ -108,7 +72,7 @@ Result<v1::RenderResponse> RenderStream::Draw(int index) const {
 }
 
 void RenderStream::OnEnd() {
-  if (added_) streams_.Remove(this);
+  SequenceStream::OnEnd();
   budget_.Return(reserved_);
 }
 

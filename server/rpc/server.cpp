@@ -2,7 +2,9 @@
 #include "rpc/server.h"
 
 #include <grpc/grpc.h>
+#include <grpc/health/v1/health.pb.h>
 #include <grpcpp/ext/health_check_service_server_builder_option.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
@@ -35,6 +37,13 @@ void SetTransportOptions(grpc::ServerBuilder& builder, const Limits& limits) {
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
 }
 
+// Lists and describes every service, gRPC's health check too: reflection fails as a whole for a
+// service whose descriptor is not linked, and gRPC itself links none of its own.
+void EnableReflection() {
+  grpc::health::v1::HealthCheckRequest::descriptor();
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+}
+
 }  // namespace
 
 Server::Server(const Limits& limits)
@@ -50,6 +59,7 @@ Server::~Server() { Shutdown(std::chrono::milliseconds(0)); }
 Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const Limits& limits) {
   std::unique_ptr<Server> service(new Server(limits));
   grpc::EnableDefaultHealthCheckService(true);
+  EnableReflection();
   grpc::ServerBuilder builder;
   SetTransportOptions(builder, limits);
   builder.AddListeningPort(listen, grpc::InsecureServerCredentials(), &service->port_);

@@ -51,6 +51,8 @@ grpc::StatusCode StatusCodeOf(ErrorCode code) {
     case ErrorCode::kWeightsSumNotOne:
     case ErrorCode::kWeightsCountMismatch:
     case ErrorCode::kTooManyQueries:
+    case ErrorCode::kPathInvalid:
+    case ErrorCode::kTooManyFrames:
     case ErrorCode::kInvalidId:
     case ErrorCode::kInvalidOption:
     case ErrorCode::kSlotLimit:

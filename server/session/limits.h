@@ -19,6 +19,8 @@ struct Limits {
   int max_mesh_vertices = 8'000;                 // bounds the cost of every blend
   int max_queries = 256;                         // of one Blend or Render
   int max_render_side = 4'096;                   // pixels
+  int max_animation_frames = 100'000;            // of one Animate
+  int max_render_frames = 10'000;                // of one Render along a path
   // Affect how much runs at once.
   int max_sessions = 10'000;
   int max_streams = 10'000;

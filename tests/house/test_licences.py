@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 REVIEWED = {
     r"ld-linux.*|linux-vdso|libc|libm": "LGPL-2.1+",
     r"libstdc\+\+|libgcc_s|libgfortran|libquadmath": "GPL-3+ with the GCC runtime exception",
-    r"libgrpc(\+\+)?|libgpr|libaddress_sorting|libabsl_\w+": "Apache-2.0",
+    r"libgrpc(\+\+)?|libgrpc\+\+_reflection|libgpr|libaddress_sorting|libabsl_\w+": "Apache-2.0",
     r"libupb|libprotobuf|libre2": "BSD-3-Clause",
     r"libssl|libcrypto|libtbb|libopencv_core|libopencv_imgproc": "Apache-2.0",
     r"libspdlog|libfmt|libcares|libX11|libXau|libXdmcp|libxcb|libGLX|libGLdispatch": "MIT",

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rpc/animate_stream.h"
+
+#include <utility>
+
+#include "rpc/query_convert.h"
+
+namespace posespace {
+namespace {
+
+constexpr int kAhead = 32;  // frames; a slow reader holds some 100 kB
+constexpr int kTurn = 8;    // frames, about a millisecond
+
+}  // namespace
+
+AnimateStream::AnimateStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
+                             const v1::AnimateRequest& request)
+    : SequenceStream(Call("Animate"), streams, pool, kAhead, kTurn), request_(request) {
+  if (auto begun = Guarded([&] { return Begin(registry); }); !begun) Close(std::move(begun));
+  Release();
+}
+
+Result<void> AnimateStream::Begin(const Registry& registry) {
+  const auto session = TRY(registry.Find(request_.session_id()));
+  pose_space_ = TRY(session->Built());
+  TRY(CheckRevision(*pose_space_, request_.revision()));
+  frames_ =
+      TRY(AnimationFrames::From(request_.animation(), registry.limits().max_animation_frames));
+  start_ = Clock::now();
+  return Start(frames_->count());
+}
+
+Result<v1::AnimateResponse> AnimateStream::Make(int index) {
+  const Query query = frames_->At(index);
+  const Frame frame = TRY(pose_space_->Blend(query));
+  const Point& at = std::get<Point>(query.position);
+  v1::AnimateResponse response;
+  response.set_index(index);
+  response.set_time(frames_->TimeOf(index));
+  response.mutable_at()->set_x(at.x());
+  response.mutable_at()->set_y(at.y());
+  ToProto(frame, /*with_weights=*/true, response.mutable_frame());
+  response.set_revision(pose_space_->revision());
+  return response;
+}
+
+AnimateStream::Clock::time_point AnimateStream::Due(int index) const {
+  if (!request_.paced()) return Clock::time_point::min();
+  return start_ + std::chrono::duration_cast<Clock::duration>(
+                      std::chrono::duration<double>(frames_->TimeOf(index)));
+}
+
+}  // namespace posespace
