@@ -1,25 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `posespace`, as a shell runs it."""
+"""The command `posespace`: what holds for all of its commands."""
 
 from __future__ import annotations
 
 import json
+import os
+import pty
+import signal
 import subprocess
-import sysconfig
+import time
 from importlib.metadata import version
-from pathlib import Path
 
-COMMAND = Path(sysconfig.get_path("scripts")) / "posespace"
+import pytest
+from command_line import COMMAND, answer, refusal, run, walk_files
+from synthetic_drawings import wavy_blob
+
 NOBODY = "127.0.0.1:1"
-
-
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([COMMAND, *arguments], capture_output=True, text=True)
+COMMANDS = [
+    ["build"],
+    ["blend"],
+    ["render"],
+    ["animate"],
+    ["inspect"],
+    ["sessions"],
+    ["sessions", "ls"],
+    ["sessions", "show"],
+    ["sessions", "rm"],
+    ["ping"],
+]
 
 
 def test_version():
     done = run("--version")
     assert (done.returncode, done.stdout) == (0, f"posespace {version('posespace')}\n")
+
+
+@pytest.mark.parametrize(
+    "command", [[], *COMMANDS], ids=lambda words: " ".join(words) or "posespace"
+)
+def test_help_shows_an_example_and_fits_a_terminal(command):
+    done = run(*command, "--help", COLUMNS="80")
+    assert done.returncode == 0
+    assert f"  posespace {' '.join(command)}".rstrip() in done.stdout.partition("example")[2]
+    assert max(map(len, done.stdout.splitlines())) <= 80
 
 
 def test_ping_says_that_the_service_answers(server):
@@ -30,20 +53,164 @@ def test_ping_says_that_the_service_answers(server):
 
 
 def test_ping_in_json(server):
-    done = run("--json", "ping", "--server", server.address)
-    answer = json.loads(done.stdout)
-    assert answer["server"] == server.address and answer["milliseconds"] > 0
+    said = answer("ping", "--server", server.address)
+    assert said["server"] == server.address and said["milliseconds"] > 0
+
+
+def test_without_a_server_a_command_runs_one_of_its_own():
+    assert answer("--store", "memory", "ping")["server"] is None
 
 
 def test_an_unreachable_service_is_status_3():
-    done = run("ping", "--server", NOBODY)
-    assert done.returncode == 3
-    assert NOBODY in done.stderr and not done.stdout
-    assert "Traceback" not in done.stderr
+    assert NOBODY in refusal(3, "ping", "--server", NOBODY)
+    assert NOBODY in refusal(3, "blend", "tux", "--at", "0,0", "--server", NOBODY)
 
 
-def test_wrong_usage_is_status_2():
-    for arguments in ([], ["dance"], ["ping", "--loud"]):
-        done = run(*arguments)
-        assert done.returncode == 2
-        assert "usage: posespace" in done.stderr
+def test_no_program_to_run_is_status_3():
+    said = refusal(3, "--store", "memory", "ping", POSESPACED="/nowhere/posespaced")
+    assert "/nowhere/posespaced" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([], "COMMAND"),
+        (["dance"], "dance"),
+        (["ping", "--loud"], "--loud"),
+        (["--server", NOBODY, "--store", "memory", "ping"], "either --server or --store"),
+        (["blend", "tux"], "--at --weights"),
+        (["blend", "tux", "--at", "here"], "'here' is not X,Y"),
+        (["blend", "tux", "--at", "1"], "'1' is not X,Y"),
+        (["blend", "tux", "--at", "1,2,3"], "'1,2,3' is not X,Y"),
+        (["blend", "tux", "--at", "0,0", "--weights", "a=1"], "not allowed with"),
+        (["blend", "tux", "--weights", "stand"], "'stand' is not ID=WEIGHT"),
+        (["blend", "tux", "--weights", "a=1,a=0"], "weighs 'a' twice"),
+        (["render", "tux", "--at", "0,0", "--size", "big", "-o", "x.png"], "'big' is not WIDTH"),
+        (["render", "tux", "--at", "0,0"], "-o"),
+        (["animate", "tux", "-o", "x.gif"], "--path --path-file"),
+        (["animate", "tux", "--path", "", "-o", "x.gif"], "'' is not points"),
+        (["animate", "tux", "--path", "0,0 1", "-o", "x.gif"], "'1' is not points"),
+        (["animate", "tux", "--path", "0,0", "--easing", "odd", "-o", "x.gif"], "odd"),
+        (["build", "--out", "x"], "DRAWING"),
+        (["build", "a.png"], "--out"),
+        (["build", "a.png", "--place", "a", "--out", "x"], "'a' is not ID=X,Y"),
+        (["build", "a.png", "--threshold", "high", "--out", "x"], "high"),
+        (["sessions"], "COMMAND"),
+        (["sessions", "rm"], "SESSION"),
+    ],
+)
+def test_wrong_usage_is_status_2(arguments, says):
+    said = refusal(2, *arguments)
+    assert "usage: posespace" in said and says in said
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["blend", "nobody", "--at", "0,0"],
+        ["render", "nobody", "--at", "0,0", "-o", "x.png"],
+        ["animate", "nobody", "--path", "0,0", "-o", "x.png"],
+        ["inspect", "nobody"],
+        ["sessions", "show", "nobody"],
+        ["sessions", "rm", "nobody"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_an_unknown_session_is_refused_by_name(server, arguments):
+    assert "nobody" in refusal(1, "--server", server.address, *arguments)
+
+
+def test_a_refusal_in_json_has_its_reason(server):
+    done = run("--json", "--server", server.address, "inspect", "nobody")
+    assert done.returncode == 1
+    error = json.loads(done.stdout)["error"]
+    assert error["reason"] == "SESSION_NOT_FOUND"
+    assert done.stderr == f"posespace: {error['message']}\n"
+
+
+def test_a_session_that_is_not_built_is_refused(server, session):
+    said = refusal(1, "--server", server.address, "blend", session.id, "--at", "0,0")
+    assert session.id in said
+
+
+def test_a_reader_that_has_enough_is_no_matter(server, walk):
+    done = subprocess.run(
+        f"'{COMMAND}' --server {server.address} blend {walk.id} --at 0,0 | head -c 20",
+        shell=True,
+        capture_output=True,
+        text=True,
+    )
+    assert len(done.stdout) == 20 and done.stderr == ""
+
+
+def slow_drawings(folder):
+    """Drawings whose build to SLOW takes some seconds."""
+    files = [folder / f"blob{k}.json" for k in range(6)]
+    for k, file in enumerate(files):
+        ring = wavy_blob(9 + k, 0.12, rows=900)
+        file.write_text(json.dumps({"outer": ring.tolist()}))
+    return files
+
+
+SLOW = ["--tolerance", "0.001", "--target-edge-length", "0.02"]
+
+
+def until_build_is(client, session_id, wanted):
+    """Waits for a state of the session's build."""
+    deadline = time.monotonic() + 20
+    state = "not there"
+    while state != wanted:
+        assert time.monotonic() < deadline, f"the build is {state}"
+        time.sleep(0.01)
+        for session in client.session_states():
+            if session.id == session_id and session.build is not None:
+                state = session.build.state
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ctrl_c_cancels_the_build_and_leaves_nothing(server, client, tmp_path, number, status):
+    files = slow_drawings(tmp_path)
+    out, name = tmp_path / "out", f"interrupted-{status}"
+    arguments = ["build", *files, *SLOW, "--session", name, "--out", out]
+    build = subprocess.Popen(
+        [COMMAND, "--server", server.address, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    until_build_is(client, name, "running")
+    build.send_signal(number)
+    _, said = build.communicate(timeout=20)
+    assert build.returncode == status, said
+    assert "Traceback" not in said
+    until_build_is(client, name, "cancelled")
+    assert list(out.iterdir()) == []
+    client.session(name).delete()
+
+
+def test_a_bar_is_shown_on_terminals_only(server, client, tmp_path):
+    arguments = ["--server", server.address, "build", *walk_files(tmp_path), "--out", tmp_path]
+    silent = run(*arguments, "--session", "seen-by-nobody")
+    assert silent.stderr == ""
+
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        [COMMAND, *arguments, "--session", "seen"], stdout=subprocess.PIPE, stderr=theirs
+    ) as build:
+        os.close(theirs)
+        shown = b""
+        while chunk := _read(ours):
+            shown += chunk
+        assert build.wait() == 0
+    os.close(ours)
+    assert b"[" in shown and b"%" in shown and b"matching" in shown
+    assert shown.endswith(b"\r\x1b[K"), "the bar is gone at the end"
+    for name in ("seen", "seen-by-nobody"):
+        client.session(name).delete()
+
+
+def _read(terminal: int) -> bytes:
+    try:
+        return os.read(terminal, 4096)
+    except OSError:  # the other side is closed
+        return b""

@@ -16,6 +16,7 @@ Drawing coordinates are pixels, x right, y down; pose-space coordinates have no 
 radians.  Whatever the service refuses is a posespace.Error.
 """
 
+from posespace.animation_files import save_animation
 from posespace.client import Client, connect
 from posespace.errors import (
     AlreadyExists,
@@ -36,6 +37,7 @@ from posespace.errors import (
 from posespace.local import LocalServer, serve_locally
 from posespace.player import Avatar, Item, Player
 from posespace.results import (
+    AnimationFrame,
     Build,
     BuildReport,
     Frame,
@@ -48,6 +50,7 @@ from posespace.session import Session
 
 __all__ = [
     "AlreadyExists",
+    "AnimationFrame",
     "Avatar",
     "Build",
     "BuildReport",
@@ -75,5 +78,6 @@ __all__ = [
     "Unauthenticated",
     "Unavailable",
     "connect",
+    "save_animation",
     "serve_locally",
 ]

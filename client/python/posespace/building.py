@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 from posespace import messages
 from posespace.channel import Channel
-from posespace.errors import Cancelled, DeadlineExceeded, Error, Unavailable, error_of_reason
+from posespace.errors import Cancelled, DeadlineExceeded, Error, Unavailable
 from posespace.results import BuildReport
 from posespace.v1 import session_service_pb2
 
@@ -40,8 +40,7 @@ def build_and_wait(
             if on_progress is not None:
                 on_progress(build.stage, build.fraction)
             if build.HasField("error"):
-                fields = dict.fromkeys(build.error.fields, build.error.message)
-                raise error_of_reason(build.error.reason, build.error.message, fields)
+                raise messages.build_error(build.error)
             if build.state == session_service_pb2.BUILD_STATE_SUCCEEDED:
                 break
         return messages.report(build.report)

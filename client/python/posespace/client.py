@@ -12,6 +12,7 @@ from grpc_health.v1 import health_pb2
 from posespace import messages
 from posespace.channel import Channel
 from posespace.errors import Unavailable
+from posespace.results import SessionState
 from posespace.session import Session
 from posespace.v1 import session_service_pb2
 
@@ -96,11 +97,15 @@ class Client:
 
     def sessions(self) -> list[Session]:
         """All sessions, by id."""
+        return [Session(self._channel, state.id) for state in self.session_states()]
+
+    def session_states(self) -> list[SessionState]:
+        """All sessions as they stand, by id."""
         request = session_service_pb2.ListSessionsRequest(page_size=1000)
-        found: list[Session] = []
+        found: list[SessionState] = []
         while True:
             page = self._channel.call(self._channel.sessions.ListSessions, request)
-            found += [Session(self._channel, message.id) for message in page.sessions]
+            found += [messages.session_state(message) for message in page.sessions]
             if not page.next_page_token:
                 return found
             request.page_token = page.next_page_token

@@ -35,7 +35,7 @@ def serve_locally(
         with posespace.serve_locally() as server, posespace.connect(server.address) as client:
             ...
 
-    store            Where sessions are kept: "memory".
+    store            Where sessions are kept: "memory", or "sqlite:PATH".
     binary           The program; by default what POSESPACED names, else posespaced on PATH, else
                      build/bin/posespaced in the current directory or one above it.
     flags            More flags of posespaced, such as ["--log-level", "debug"].
@@ -50,6 +50,10 @@ def serve_locally(
     return LocalServer(command, startup_timeout, stop_timeout)
 
 
+class ProgramNotFound(FileNotFoundError):
+    """There is no posespaced to run."""
+
+
 class LocalServer:
     """A running posespaced; made by `serve_locally`.
 
@@ -62,7 +66,10 @@ class LocalServer:
         with tempfile.NamedTemporaryFile(prefix="posespaced-", suffix=".log", delete=False) as log:
             self._log_path = Path(log.name)
             self._process = subprocess.Popen(
-                [*_ending_with_us(), *command], stdout=subprocess.PIPE, stderr=log
+                [*_ending_with_us(), *command],
+                stdout=subprocess.PIPE,
+                stderr=log,
+                process_group=0,  # Ctrl-C in a terminal is for us, who end it in order
             )
         self._stop_at_exit = weakref.finalize(self, _stop, self._process, 1.0, self._log_path)
         try:
@@ -130,7 +137,7 @@ def _find(binary: str | os.PathLike[str] | None) -> Path:
         if found := shutil.which(named):
             return Path(found)
         source = "binary=" if binary else "POSESPACED="
-        raise FileNotFoundError(f"{source}{os.fspath(named)} is not a program")
+        raise ProgramNotFound(f"{source}{os.fspath(named)} is not a program")
     if found := shutil.which("posespaced"):
         return Path(found)
     here = Path.cwd()
@@ -138,7 +145,7 @@ def _find(binary: str | os.PathLike[str] | None) -> Path:
         candidate = folder / "build" / "bin" / "posespaced"
         if os.access(candidate, os.X_OK) and candidate.is_file():
             return candidate
-    raise FileNotFoundError(
+    raise ProgramNotFound(
         "no posespaced: name it by binary= or POSESPACED, put it on PATH, or build it so that "
         f"build/bin/posespaced is in {here} or above"
     )

@@ -14,7 +14,7 @@ from google.protobuf.message import Message
 from numpy.typing import ArrayLike, NDArray
 
 from posespace import results
-from posespace.errors import InvalidArgument, NotFound
+from posespace.errors import Error, InvalidArgument, NotFound, error_of_reason
 from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
 
 T = TypeVar("T")
@@ -60,7 +60,8 @@ def make(kind: type[M], **fields: Any) -> M:
         raise
 
 
-def _choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
+def choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
+    """What the wire has for a word, or InvalidArgument with the words there are."""
     try:
         return choices[value]
     except (KeyError, TypeError):
@@ -72,7 +73,7 @@ def _choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
 
 def foreground(name: str) -> session_service_pb2.Foreground:
     """The wire's number of a foreground."""
-    return _choice("foreground", name, _FOREGROUNDS)
+    return choice("foreground", name, _FOREGROUNDS)
 
 
 def points_array(points: ArrayLike, what: str) -> NDArray[np.float64]:
@@ -122,8 +123,8 @@ def blend_options(
     """How to blend."""
     return make(
         pose_service_pb2.BlendOptions,
-        method=_choice("method", method, _METHODS),
-        shear_limit=_choice("shear_limit", shear_limit, _SHEAR_LIMITS),
+        method=choice("method", method, _METHODS),
+        shear_limit=choice("shear_limit", shear_limit, _SHEAR_LIMITS),
         refits=refits,
         sigma=sigma,
     )
@@ -225,7 +226,14 @@ def build(message: session_service_pb2.Build) -> results.Build:
         stage=message.stage,
         fraction=message.fraction,
         report=report(message.report) if message.HasField("report") else None,
+        error=build_error(message.error) if message.HasField("error") else None,
     )
+
+
+def build_error(message: session_service_pb2.BuildError) -> Error:
+    """Why a build ended without a result."""
+    fields = dict.fromkeys(message.fields, message.message)
+    return error_of_reason(message.reason, message.message, fields)
 
 
 def session_state(message: session_service_pb2.Session) -> results.SessionState:
@@ -276,4 +284,22 @@ def frame(
         texture_weights=dict(zip(shape_ids, message.texture_weights, strict=False)),
         folds=message.folds,
         revision=revision,
+    )
+
+
+def pixels(rgba: bytes, width: int, height: int) -> NDArray[np.uint8]:
+    """A picture that came as plain bytes: (H, W, 4), free to be written to."""
+    return np.frombuffer(rgba, np.uint8).reshape(height, width, 4).copy()
+
+
+def animation_frame(
+    message: pose_service_pb2.AnimateResponse, shape_ids: Sequence[str]
+) -> results.AnimationFrame:
+    """A frame of an animation."""
+    still = frame(message.frame, shape_ids, message.revision)
+    return results.AnimationFrame(
+        **vars(still),
+        index=message.index,
+        time=message.time,
+        at=(message.at.x, message.at.y),
     )

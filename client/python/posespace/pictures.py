@@ -37,10 +37,12 @@ def picture_bytes(picture: Picture, name: str) -> bytes:
     return encode_png(pixels)
 
 
-def encode_png(pixels: NDArray[np.uint8]) -> bytes:
-    """A PNG file of (H, W, 3 or 4) uint8."""
+def encode_png(pixels: NDArray[np.uint8], *, compress_level: int = 1) -> bytes:
+    """A PNG file of (H, W, 3 or 4) uint8; level 0 to 9, quick and large to slow and small."""
     file = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(pixels)).save(file, format="PNG", compress_level=1)
+    Image.fromarray(np.ascontiguousarray(pixels)).save(
+        file, format="PNG", compress_level=compress_level
+    )
     return file.getvalue()
 
 

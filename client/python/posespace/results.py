@@ -10,6 +10,8 @@ from datetime import datetime
 import numpy as np
 from numpy.typing import NDArray
 
+from posespace.errors import Error
+
 Point = tuple[float, float]
 
 
@@ -77,6 +79,7 @@ class Build:
     stage     "matching", "simplification", "triangulation", "improvement" or "weights".
     fraction  Done so far, 0 to 1.
     report    When it succeeded.
+    error     When it failed or was cancelled: what `build` raises.
     """
 
     id: str
@@ -84,6 +87,7 @@ class Build:
     stage: str
     fraction: float
     report: BuildReport | None
+    error: Error | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,3 +160,17 @@ class Frame:
     texture_weights: Mapping[str, float]
     folds: int
     revision: str
+
+
+@dataclass(frozen=True, eq=False)
+class AnimationFrame(Frame):
+    """A frame of an animation.
+
+    index  Which, from 0.
+    time   Seconds from the start.
+    at     The place in pose space.
+    """
+
+    index: int
+    time: float
+    at: Point

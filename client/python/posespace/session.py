@@ -3,20 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import contextlib
+import itertools
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from posespace import messages
+from posespace.animation import Easing, Waypoints, animation
 from posespace.authoring import Authoring
 from posespace.channel import Channel
 from posespace.errors import Error, NotFound
 from posespace.messages import BlendMethod, Place, ShearLimit
 from posespace.pictures import decode_png
 from posespace.player import Player
-from posespace.results import Frame, Mesh
+from posespace.results import AnimationFrame, Frame, Mesh
 from posespace.v1 import pose_service_pb2
 
 _BATCH = 256  # queries in one message, the service's limit unless it was told otherwise
@@ -173,16 +176,8 @@ class Session(Authoring):
 
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
-        width, height = messages.picture_size(size)
+        request = self._render_request(size, view)
         options = messages.blend_options(method, shear_limit, refits, sigma)
-        request = pose_service_pb2.RenderRequest(
-            session_id=self._id,
-            width=width,
-            height=height,
-            format=pose_service_pb2.IMAGE_FORMAT_RGBA,
-        )
-        if view is not None:
-            request.view.CopyFrom(messages.box(view))
         channel = self._channel
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.uint8]:
@@ -192,9 +187,82 @@ class Session(Authoring):
             (answer,) = channel.stream(channel.poses.Render, request, channel.timeout)
             if revision and answer.revision != revision:
                 raise NotFound("rendered another revision", reason="REVISION_NOT_FOUND")
-            return np.frombuffer(answer.image, np.uint8).reshape(height, width, 4).copy()
+            return messages.pixels(answer.image, request.width, request.height)
 
         return ask("", []) if weights is None else self._of_one_revision(ask)
+
+    def animate(
+        self,
+        path: Waypoints,
+        *,
+        fps: float = 60,
+        easing: Easing = "uniform",
+        loop: bool = False,
+        duration: float | None = None,
+        paced: bool = False,
+        method: BlendMethod = "rigid",
+        refits: int | None = None,
+        shear_limit: ShearLimit | None = None,
+        sigma: float = 0.0,
+    ) -> Iterator[AnimationFrame]:
+        """Drawings along a smooth path through points of pose space, one by one.
+
+            for frame in session.animate([(0, 0), (0.5, 1), (0, 1)], fps=30, loop=True):
+                draw(frame.vertices)
+
+        path      1 to 1,000 points (x, y), or (x, y, seconds from the start) with times that grow.
+                  The curve through them has no jump in velocity or acceleration.
+        fps       Frames a second, more than 0 to 1,000: frame k is the drawing at k / fps.
+        easing    "uniform": as the times say, or at even speed from point to point.  "in-out": the
+                  path as a whole starts and ends at rest.
+        loop      Go on to the first point and smoothly through it; one round is played, without
+                  repeating its first frame.
+        duration  Seconds for the whole of a path without times, up to 3,600; by default one second
+                  from point to point.
+        paced     The service sends each frame at its instant; by default as fast as it is read.
+
+        Nothing is asked before the first frame is taken.  All frames are of one revision.  Leaving
+        the loop, or closing the iterator, ends the stream; there is no timeout, but a connection
+        that has died is noticed.
+
+        Raises, with the first frame, NotBuilt and InvalidArgument (PATH_INVALID, TOO_MANY_FRAMES,
+        ...); other options and errors as in `blend`.
+        """
+        options = messages.blend_options(method, shear_limit, refits, sigma)
+        request = messages.make(
+            pose_service_pb2.AnimateRequest,
+            session_id=self._id,
+            animation=animation(path, fps, easing, loop, duration, options),
+            paced=paced,
+        )
+        return self._animation_frames(request)
+
+    def render_animation(
+        self,
+        path: Waypoints,
+        *,
+        fps: float = 60,
+        easing: Easing = "uniform",
+        loop: bool = False,
+        duration: float | None = None,
+        size: tuple[int, int] = (512, 512),
+        view: tuple[float, float, float, float] | None = None,
+        method: BlendMethod = "rigid",
+        refits: int | None = None,
+        shear_limit: ShearLimit | None = None,
+        sigma: float = 0.0,
+    ) -> Iterator[NDArray[np.uint8]]:
+        """Pictures along a smooth path, one by one: (H, W, 4) uint8 each.
+
+            frames = session.render_animation([(0, 0), (0, 1)], fps=30, size=(320, 320))
+            posespace.save_animation(frames, "wave.gif", fps=30)
+
+        At most 10,000 frames.  Path and streaming as in `animate`, pictures as in `render`.
+        """
+        request = self._render_request(size, view)
+        options = messages.blend_options(method, shear_limit, refits, sigma)
+        request.animation.CopyFrom(animation(path, fps, easing, loop, duration, options))
+        return self._animation_pictures(request)
 
     def play(self, *, revision: str = "") -> Player:
         """Opens the stream of frames, with this session bound to it; see Player.
@@ -207,6 +275,42 @@ class Session(Authoring):
         Raises NotBuilt.
         """
         return Player(self._channel, self._id, revision)
+
+    def _render_request(
+        self, size: tuple[int, int], view: tuple[float, float, float, float] | None
+    ) -> pose_service_pb2.RenderRequest:
+        width, height = messages.picture_size(size)
+        request = messages.make(
+            pose_service_pb2.RenderRequest,
+            session_id=self._id,
+            width=width,
+            height=height,
+            format=pose_service_pb2.IMAGE_FORMAT_RGBA,
+        )
+        if view is not None:
+            request.view.CopyFrom(messages.box(view))
+        return request
+
+    def _animation_frames(
+        self, request: pose_service_pb2.AnimateRequest
+    ) -> Generator[AnimationFrame, None, None]:
+        def begin(revision: str, shape_ids: list[str]) -> tuple[Any, Any, list[str]]:
+            request.revision = revision
+            answers = self._channel.stream(self._channel.poses.Animate, request, None)
+            return next(answers), answers, shape_ids
+
+        first, answers, shape_ids = self._of_one_revision(begin)
+        with contextlib.closing(answers):
+            for answer in itertools.chain([first], answers):
+                yield messages.animation_frame(answer, shape_ids)
+
+    def _animation_pictures(
+        self, request: pose_service_pb2.RenderRequest
+    ) -> Generator[NDArray[np.uint8], None, None]:
+        answers = self._channel.stream(self._channel.poses.Render, request, None)
+        with contextlib.closing(answers):
+            for answer in answers:
+                yield messages.pixels(answer.image, request.width, request.height)
 
     def _blend_batches(
         self,
