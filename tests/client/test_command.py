@@ -10,6 +10,7 @@ import signal
 import subprocess
 import time
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 from command_line import COMMAND, answer, refusal, run, walk_files
@@ -78,6 +79,7 @@ def test_no_program_to_run_is_status_3():
         (["dance"], "dance"),
         (["ping", "--loud"], "--loud"),
         (["--server", NOBODY, "--store", "memory", "ping"], "either --server or --store"),
+        (["--server", "", "ping"], "HOST:PORT"),
         (["blend", "tux"], "--at --weights"),
         (["blend", "tux", "--at", "here"], "'here' is not X,Y"),
         (["blend", "tux", "--at", "1"], "'1' is not X,Y"),
@@ -141,6 +143,65 @@ def test_a_reader_that_has_enough_is_no_matter(server, walk):
         text=True,
     )
     assert len(done.stdout) == 20 and done.stderr == ""
+
+
+def test_an_answer_that_cannot_be_written_is_refused(server):
+    for arguments in ("ping", "--json ping", "--json inspect nobody"):
+        done = subprocess.run(
+            f"'{COMMAND}' --server {server.address} {arguments} > /dev/full",
+            shell=True,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 1
+        assert done.stderr.startswith("posespace: ") and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("loaded", ["_multiarray_umath", "cygrpc", "_imaging"])
+def test_an_interrupt_while_it_is_loaded_ends_it_without_a_word(loaded):
+    ping = subprocess.Popen(
+        [COMMAND, "--store", "memory", "ping"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    while ping.poll() is None and loaded not in Path(f"/proc/{ping.pid}/maps").read_text():
+        time.sleep(0.001)
+    ping.send_signal(signal.SIGINT)
+    _, said = ping.communicate(timeout=20)
+    assert b"Traceback" not in said
+    assert ping.returncode in (-signal.SIGINT, 130)
+
+
+def test_an_interrupt_for_the_whole_group_is_for_the_command(tmp_path):
+    """As a terminal sends it: the service of its own ends only when the command ends it."""
+    arguments = ["build", *slow_drawings(tmp_path), *SLOW, "--out", tmp_path / "out"]
+    build = subprocess.Popen(
+        [COMMAND, "--store", "memory", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    ours = wait_for_service(build.pid)
+    os.killpg(build.pid, signal.SIGINT)
+    _, said = build.communicate(timeout=20)
+    assert (build.returncode, said) == (130, "posespace: interrupted\n")
+    assert not os.path.exists(f"/proc/{ours}")
+
+
+def wait_for_service(parent):
+    """The posespaced that a process runs, once it builds."""
+    deadline = time.monotonic() + 20
+    while time.monotonic() < deadline:
+        children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
+        if children and cpu_seconds(children[0]) > 0.2:
+            return children[0]
+        time.sleep(0.02)
+    pytest.fail("no service began to build")
+
+
+def cpu_seconds(pid):
+    """What a process has computed so far."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def slow_drawings(folder):

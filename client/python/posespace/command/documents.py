@@ -40,8 +40,12 @@ def mesh_document(mesh: Mesh, shapes: list[Shape]) -> Document:
 
 
 def report_document(report: BuildReport) -> Document:
-    """How a build went."""
-    return {name: value for name, value in asdict(report).items() if name != "revision"}
+    """How a build went; what is said by name is in the order of names."""
+    return {
+        name: dict(sorted(value.items())) if isinstance(value, dict) else value
+        for name, value in asdict(report).items()
+        if name != "revision"
+    }
 
 
 def built_mesh(session: Session) -> Mesh | None:

@@ -81,7 +81,7 @@ def _marks(correspondences: list[dict[str, tuple[float, float]]]) -> list[str]:
 
 
 def _mesh(revision: str, report: Document) -> list[str]:
-    levels = ", ".join(f"{count} {level}" for level, count in sorted(report["levels"].items()))
+    levels = ", ".join(f"{count} {level}" for level, count in report["levels"].items())
     seconds = ", ".join(f"{stage} {spent:.2f}" for stage, spent in report["seconds"].items())
     rows = [
         ["revision", revision],

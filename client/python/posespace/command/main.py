@@ -72,16 +72,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with service(arguments.server, arguments.store) as client:
             arguments.run(client, arguments)
-        sys.stdout.flush()
+            print(end="", flush=True)
         return 0
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _say_no_more()
         return _READER_GONE
     except KeyboardInterrupt:
         print("posespace: interrupted", file=sys.stderr)
         return _INTERRUPTED
     except Exception as error:
         return _refuse(error, arguments.json)
+
+
+def _say_no_more() -> None:
+    """Leaves nothing for the interpreter to write, and fail at, when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _end(number: int, frame: object) -> NoReturn:
@@ -101,7 +106,8 @@ def _refuse(error: Exception, in_json: bool) -> int:
     elif isinstance(error, ProgramNotFound):
         status = _UNREACHABLE
     elif isinstance(error, OSError):
-        message = f"{error.filename}: {error.strerror}" if error.filename else message
+        said = error.strerror or message
+        message = f"{error.filename}: {said}" if error.filename else said
     else:
         where = traceback.extract_tb(error.__traceback__)[-1]
         message = (
@@ -109,6 +115,10 @@ def _refuse(error: Exception, in_json: bool) -> int:
             f"({os.path.basename(where.filename)}:{where.lineno})"
         )
     print(f"posespace: {message}", file=sys.stderr)
-    if in_json:
-        output.print_json({"error": {"message": message, "reason": reason, "fields": fields}})
+    try:
+        if in_json:
+            output.print_json({"error": {"message": message, "reason": reason, "fields": fields}})
+        print(end="", flush=True)
+    except OSError:  # the answer's own place is at fault
+        _say_no_more()
     return status

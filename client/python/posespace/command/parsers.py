@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from posespace.client import Client
+from posespace.command.values import address
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -20,6 +21,7 @@ def add_common(parser: argparse.ArgumentParser, default: object) -> None:
     parser.add_argument(
         "--server",
         metavar="ADDR",
+        type=address,
         default=default,
         help="a running service, HOST:PORT or unix:PATH; by default one is run meanwhile",
     )

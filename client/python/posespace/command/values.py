@@ -23,6 +23,13 @@ def _numbers(text: str, counts: tuple[int, ...], form: str) -> tuple[float, ...]
     return numbers
 
 
+def address(text: str) -> str:
+    """127.0.0.1:7433"""
+    if not text:
+        raise argparse.ArgumentTypeError("an address is HOST:PORT or unix:PATH")
+    return text
+
+
 def point(text: str) -> tuple[float, float]:
     """0.5,1"""
     x, y = _numbers(text, (2,), "X,Y such as 0.5,1")
