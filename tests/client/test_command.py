@@ -145,6 +145,19 @@ def test_a_reader_that_has_enough_is_no_matter(server, walk):
     assert len(done.stdout) == 20 and done.stderr == ""
 
 
+def test_names_that_a_terminal_cannot_show_are_no_matter(server, client, walk, tmp_path):
+    named = client.create_session("named", display_name="Füße 🦶")
+    out = os.fsencode(tmp_path) + b"/caf\xe9.png"
+    command = [COMMAND, "--server", server.address]
+    for arguments in (["inspect", "named"], ["render", walk.id, "--at", "0,0", "-o", out]):
+        done = subprocess.run(
+            [*command, *arguments], capture_output=True, env={"PYTHONIOENCODING": "ascii"}
+        )
+        assert (done.returncode, done.stderr) == (0, b""), done.stderr
+    assert os.path.exists(out)
+    named.delete()
+
+
 def test_an_answer_that_cannot_be_written_is_refused(server):
     for arguments in ("ping", "--json ping", "--json inspect nobody"):
         done = subprocess.run(

@@ -16,7 +16,7 @@ from PIL import Image
 from synthetic_drawings import WALK, figure, png_of, star
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = {"report.levels", "report.seconds", "report.confidence"}  # their keys are names
+MAPS = {"report.levels", "report.seconds", "report.confidence", "labels"}  # by names
 
 
 @pytest.fixture(scope="module")
@@ -71,11 +71,22 @@ def fields_of(value, path=""):
         yield from {field: None for item in value for field in fields_of(item, path + "[]")}
 
 
+def described_in(page):
+    """The first column of a page's table."""
+    return re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
+
+
 def test_mesh_json_has_the_fields_that_its_page_describes(mesh):
     page = (ROOT / "docs" / "mesh.md").read_text()
-    described = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
-    assert list(fields_of(mesh)) == described
+    assert list(fields_of(mesh)) == described_in(page)
     assert f'`"{mesh["format"]}"`' in page
+
+
+def test_report_json_has_the_fields_that_its_page_describes(built):
+    page = (ROOT / "docs" / "command.md").read_text()
+    report = json.loads((built.out / "report.json").read_text())
+    fields = [field for field in fields_of(report) if not field.startswith("report.")]
+    assert fields == described_in(page)
 
 
 def test_the_code_on_the_page_of_mesh_json_runs(built, mesh, monkeypatch):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
@@ -204,7 +204,7 @@ class Session(Authoring):
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
         sigma: float = 0.0,
-    ) -> Iterator[AnimationFrame]:
+    ) -> Generator[AnimationFrame, None, None]:
         """Drawings along a smooth path through points of pose space, one by one.
 
             for frame in session.animate([(0, 0), (0.5, 1), (0, 1)], fps=30, loop=True):
@@ -251,7 +251,7 @@ class Session(Authoring):
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
         sigma: float = 0.0,
-    ) -> Iterator[NDArray[np.uint8]]:
+    ) -> Generator[NDArray[np.uint8], None, None]:
         """Pictures along a smooth path, one by one: (H, W, 4) uint8 each.
 
             frames = session.render_animation([(0, 0), (0, 1)], fps=30, size=(320, 320))

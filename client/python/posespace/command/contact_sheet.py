@@ -69,7 +69,7 @@ def _mesh_over_drawing(texture: NDArray[np.uint8], mesh: Mesh, shape_id: str) ->
         draw.line([places[a], places[b], places[c], places[a]], fill=_EDGE, width=1)
     for loop in mesh.boundary:
         rim = [places[v] for v in loop.tolist()]
-        draw.line([*rim, rim[0]], fill=_RIM, width=2 * _FINE)
+        draw.line([*rim, rim[0]], fill=_RIM, width=3)
     return cell.resize((_CELL, _CELL), Image.Resampling.LANCZOS)
 
 

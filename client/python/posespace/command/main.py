@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import re
 import signal
@@ -69,6 +70,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.server is not None and arguments.store is not None:
         parser.error("give either --server or --store: a running service has a store of its own")
     signal.signal(signal.SIGTERM, _end)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files and people in any encoding
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         with service(arguments.server, arguments.store) as client:
             arguments.run(client, arguments)

@@ -30,7 +30,7 @@ def add_common(parser: argparse.ArgumentParser, default: object) -> None:
         metavar="PATH",
         default=default,
         help="where that one keeps sessions: PATH, sqlite:PATH or memory; by default "
-        "posespace/sessions.db in XDG_DATA_HOME or ~/.local/share",
+        "posespace/posespaced.sqlite in XDG_DATA_HOME or ~/.local/share",
     )
     parser.add_argument(
         "--json",

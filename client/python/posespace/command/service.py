@@ -21,10 +21,10 @@ _NOTICE_AFTER = 1.0  # seconds of waiting without a word
 
 
 def default_store() -> str:
-    """sessions.db in posespace's folder of the user's data."""
+    """posespaced.sqlite in posespace's folder of the user's data."""
     named = os.environ.get("XDG_DATA_HOME", "")
     home = Path(named) if os.path.isabs(named) else Path.home() / ".local" / "share"
-    return f"sqlite:{home / 'posespace' / 'sessions.db'}"
+    return f"sqlite:{home / 'posespace' / 'posespaced.sqlite'}"
 
 
 @contextlib.contextmanager
