@@ -56,7 +56,7 @@ class GroupMatching {
     return ShareRows(curves_, maps_, landmarks);
   }
 
-  std::vector<double> Confidence() const {
+  MatchingEvidence Evidence() const {
     MatchingEvidence evidence{costs_, mirrored_costs_, Eigen::MatrixXd::Zero(n_, n_)};
     for (int i = 0; i < n_; ++i) {
       const OutlineMap to_common = maps_[i].Inverse();
@@ -70,7 +70,7 @@ class GroupMatching {
         evidence.cycle_errors(i, j) = evidence.cycle_errors(j, i) = sum / kCycleSamples;
       }
     }
-    return ConfidenceOf(evidence);
+    return evidence;
   }
 
  private:
@@ -269,10 +269,13 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
   if (!matching.Run()) return cancelled;
 
   CommonRows rows = matching.Rows();
-  const std::vector<double> confidence = matching.Confidence();
+  const MatchingEvidence evidence = matching.Evidence();
+  const FlipProposal proposal = ProposeFlips(evidence);
+  const std::vector<double> confidence = ConfidenceOf(evidence, proposal);
   MatchedOutlines result;
   result.outlines.resize(shapes.size());
   result.confidence.resize(shapes.size());
+  result.proposal = {std::vector<bool>(shapes.size()), proposal.gain};
   for (std::size_t k = 0; k < order.size(); ++k) {
     const MatchingShape& shape = shapes[order[k]];
     const auto crossing = FindCrossing(rows.outlines[k], progress);
@@ -285,6 +288,7 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
     }
     result.outlines[order[k]] = std::move(rows.outlines[k]);
     result.confidence[order[k]] = confidence[k];
+    result.proposal.flips[order[k]] = proposal.flips[k];
   }
   for (const int landmark : of_tuple) {
     result.landmark_rows.push_back(rows.landmark_rows[landmark]);

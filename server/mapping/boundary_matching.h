@@ -41,6 +41,12 @@ struct MatchingOptions {
   double max_landmark_distance = 0.05;
 };
 
+// Drawings that would fit their group better seen in a mirror, left and right exchanged.
+struct FlipProposal {
+  std::vector<bool> flips;  // one a drawing; at most half of them
+  double gain = 1.0;        // cost of all pairs' matches as they are / with the flips, >= 1
+};
+
 // Outlines in correspondence.
 struct MatchedOutlines {
   std::vector<Points> outlines;    // N of n x 2: row k is the same place on every outline
@@ -48,6 +54,9 @@ struct MatchedOutlines {
   // Per drawing, in (0, 1]: how clear its matching is; below 0.5 a person should look at it.  1
   // when N = 1.
   std::vector<double> confidence;
+  // Never applied here: a flip mirrors the artwork, and only a person knows.  None is proposed when
+  // its gain is below 1.05 or there are landmarks, which say which way round a drawing is.
+  FlipProposal proposal;
 };
 
 // Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at

@@ -18,6 +18,8 @@ constexpr double kDoubtfulScore = 1.2;
 // mirrored match may be cheaper by chance.
 constexpr double kUnremarkableCost = 0.01;
 
+constexpr double kLeastGain = 1.05;  // of flips worth proposing
+
 double FlippedCost(const Eigen::MatrixXd& costs, const Eigen::MatrixXd& mirrored_costs,
                    const std::vector<bool>& flips) {
   double sum = 0.0;
@@ -29,8 +31,8 @@ double FlippedCost(const Eigen::MatrixXd& costs, const Eigen::MatrixXd& mirrored
   return sum;
 }
 
-}  // namespace
-
+// The flips that make the sum of costs least, as far as flipping one drawing after another finds
+// them.  The larger group stays, and of equal groups that of drawing 0.
 std::vector<bool> CheapestFlips(const Eigen::MatrixXd& costs,
                                 const Eigen::MatrixXd& mirrored_costs) {
   const int n = static_cast<int>(costs.rows());
@@ -72,27 +74,29 @@ std::vector<bool> CheapestFlips(const Eigen::MatrixXd& costs,
   return best;
 }
 
-std::vector<double> ConfidenceOf(const MatchingEvidence& evidence) {
+}  // namespace
+
+FlipProposal ProposeFlips(const MatchingEvidence& evidence) {
+  const auto n = evidence.costs.rows();
+  const FlipProposal none{std::vector<bool>(n, false), 1.0};
+  if (n < 2 || evidence.mirrored_costs.size() == 0) return none;
+  FlipProposal proposal{CheapestFlips(evidence.costs, evidence.mirrored_costs), 1.0};
+  const double least = FlippedCost(evidence.costs, evidence.mirrored_costs, proposal.flips);
+  const double unremarkable = kUnremarkableCost * 0.5 * static_cast<double>(n * (n - 1));
+  proposal.gain = (0.5 * evidence.costs.sum() + unremarkable) / (least + unremarkable);
+  return proposal.gain >= kLeastGain ? proposal : none;
+}
+
+std::vector<double> ConfidenceOf(const MatchingEvidence& evidence, const FlipProposal& proposal) {
   const auto n = evidence.costs.rows();
   if (n < 2) return std::vector<double>(n, 1.0);
 
-  std::vector<double> scores(n, 0.0);
+  std::vector<double> confidence;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double others = static_cast<double>(n - 1);
-    scores[i] = std::max(evidence.costs.row(i).sum() / others / kDoubtfulCost,
-                         evidence.cycle_errors.row(i).sum() / others / kDoubtfulCycle);
-  }
-  if (evidence.mirrored_costs.size() > 0) {
-    const std::vector<bool> flips = CheapestFlips(evidence.costs, evidence.mirrored_costs);
-    const double least = FlippedCost(evidence.costs, evidence.mirrored_costs, flips);
-    const double unremarkable = kUnremarkableCost * 0.5 * static_cast<double>(n * (n - 1));
-    const double gain = (0.5 * evidence.costs.sum() + unremarkable) / (least + unremarkable);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (flips[i]) scores[i] = std::max(scores[i], (gain - 1.0) / kDoubtfulGain);
-    }
-  }
-  std::vector<double> confidence;
-  for (const double score : scores) {
+    double score = std::max(evidence.costs.row(i).sum() / others / kDoubtfulCost,
+                            evidence.cycle_errors.row(i).sum() / others / kDoubtfulCycle);
+    if (proposal.flips[i]) score = std::max(score, (proposal.gain - 1.0) / kDoubtfulGain);
     confidence.push_back(1.0 / (1.0 + std::pow(score / kDoubtfulScore, 2)));
   }
   return confidence;

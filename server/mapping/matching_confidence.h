@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mapping/boundary_matching.h"
+
 namespace posespace {
 
 // What speaks for and against the matches of N drawings; all matrices N x N and symmetric.
@@ -14,15 +16,15 @@ struct MatchingEvidence {
   Eigen::MatrixXd cycle_errors;    // mean |direct - composed|, turns
 };
 
-// The flips of drawings that make the sum of the pairs' costs least.  Entry i is true when drawing
-// i is to be mirrored; the larger group stays, and of equal groups that of drawing 0.
-std::vector<bool> CheapestFlips(const Eigen::MatrixXd& costs,
-                                const Eigen::MatrixXd& mirrored_costs);
+// The flips of drawings that make the sum of the pairs' costs least; none when they gain less than
+// FlipProposal says or the evidence has no mirrored costs.  The larger group stays, and of equal
+// groups that of drawing 0.
+FlipProposal ProposeFlips(const MatchingEvidence& evidence);
 
 // How clear the matching of each drawing is, in (0, 1]; below 0.5 a person should look at it.  A
 // drawing is doubtful when it is unlike its group, when matching it directly and by way of others
 // disagree, or when it would fit its group better mirrored.
-std::vector<double> ConfidenceOf(const MatchingEvidence& evidence);
+std::vector<double> ConfidenceOf(const MatchingEvidence& evidence, const FlipProposal& proposal);
 
 }  // namespace posespace
 

@@ -73,6 +73,7 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
   report.used_overlay = triangulated->used_overlay;
   report.min_angle = MinAngle(result.mesh);
   report.confidence = std::move(matched->confidence);
+  result.proposal = std::move(matched->proposal);
   return result;
 }
 

@@ -32,6 +32,7 @@ struct MappingReport {
 struct Mapping {
   CompatibleMesh mesh;
   MappingReport report;
+  FlipProposal proposal;  // as in MatchedOutlines
 };
 
 // N drawings -> one mesh that is valid in all of them (paper, section 3): outlines are matched,

@@ -11,6 +11,8 @@ namespace posespace {
 namespace {
 
 constexpr std::size_t kTextBytes = 1'024;  // of one warning or message
+constexpr int kDefaultSamples = 64;        // of a suggested matching
+constexpr int kMostSamples = 1'024;
 
 bool IsFinite(const v1::Point& point) {
   return std::isfinite(point.x()) && std::isfinite(point.y());
@@ -166,6 +168,13 @@ Result<std::vector<Correspondence>> CorrespondencesFromProto(
   return tuples;
 }
 
+Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request) {
+  const int samples = request.has_samples() ? request.samples() : kDefaultSamples;
+  if (samples >= 1 && samples <= kMostSamples) return samples;
+  return Refusal(ErrorCode::kInvalidOption, "samples",
+                 "is " + std::to_string(samples) + ", not 1 to " + std::to_string(kMostSamples));
+}
+
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) {
   Placements placements;
   std::vector<Violation> unusable, not_finite;
@@ -222,6 +231,18 @@ void ToProto(const SessionView& view, v1::Session* session) {
   ToProto(view.updated, session->mutable_update_time());
   session->set_revision(view.revision);
   if (view.build) ToProto(*view.build, session->mutable_build());
+}
+
+void ToProto(const Suggestion& suggestion, v1::SuggestCorrespondencesResponse* response) {
+  for (std::size_t k = 0; k < suggestion.shape_ids.size(); ++k) {
+    v1::ShapeSuggestion* const shape = response->add_shapes();
+    shape->set_shape_id(suggestion.shape_ids[k]);
+    shape->set_confidence(suggestion.confidence[k]);
+    shape->set_flip(suggestion.proposal.flips[k]);
+    ToProto(suggestion.arcs[k], shape->mutable_arc());
+  }
+  response->set_flip_gain(suggestion.proposal.gain);
+  response->set_etag(suggestion.etag);
 }
 
 void ToProto(const Drawing& drawing, v1::Shape* shape) {

@@ -25,6 +25,9 @@ Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request);
 Result<std::vector<Correspondence>> CorrespondencesFromProto(
     const v1::SetCorrespondencesRequest& request);
 
+// How many places to sample.  Fails  kInvalidOption (not 1 to 1024).
+Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request);
+
 // Fails  kPlacementNotFinite, kInvalidOption (no place, a shape placed twice); all faults at once.
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request);
 
@@ -32,6 +35,7 @@ Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request);
 Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options);
 
 void ToProto(const SessionView& view, v1::Session* session);
+void ToProto(const Suggestion& suggestion, v1::SuggestCorrespondencesResponse* response);
 void ToProto(const Drawing& drawing, v1::Shape* shape);
 void ToProto(const BuildStatus& status, v1::Build* build);
 void ToProto(const Texture& texture, v1::TexturePlacement* placement);

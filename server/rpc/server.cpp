@@ -20,6 +20,7 @@ constexpr int kMetadataBytes = 8 << 10;
 constexpr std::size_t kWaitingBlends = 4'096;  // a few seconds of work
 constexpr std::size_t kWaitingUploads = 64;    // each may hold a whole request
 constexpr int kBulkNiceness = 5;               // pictures and uploads give way to frames
+constexpr int kMatchingNiceness = 19;          // as long as builds, and as patient
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
@@ -51,7 +52,9 @@ Server::Server(const Limits& limits)
       streams_(limits.max_streams),
       blend_pool_(Cores(), kWaitingBlends, 0),
       bulk_pool_(Cores(), kWaitingUploads, kBulkNiceness),
-      session_service_(registry_, streams_, bulk_pool_),
+      matching_pool_(std::max(1, limits.concurrent_builds),
+                     static_cast<std::size_t>(limits.build_queue), kMatchingNiceness),
+      session_service_(registry_, streams_, bulk_pool_, matching_pool_),
       pose_service_(registry_, streams_, blend_pool_, bulk_pool_) {}
 
 Server::~Server() { Shutdown(std::chrono::milliseconds(0)); }

@@ -52,6 +52,7 @@ class Server {
   LiveStreams streams_;
   ComputePool blend_pool_;
   ComputePool bulk_pool_;
+  ComputePool matching_pool_;
   SessionService session_service_;
   PoseService pose_service_;
   std::unique_ptr<grpc::Server> server_;

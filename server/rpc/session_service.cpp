@@ -7,6 +7,7 @@
 #include "rpc/build_watch.h"
 #include "rpc/call.h"
 #include "rpc/convert.h"
+#include "rpc/suggest_call.h"
 
 namespace posespace {
 namespace {
@@ -124,6 +125,12 @@ grpc::ServerUnaryReactor* SessionService::SetCorrespondences(
     ToProto(session->View(), response->mutable_session());
     return {};
   });
+}
+
+grpc::ServerUnaryReactor* SessionService::SuggestCorrespondences(
+    grpc::CallbackServerContext* /*context*/, const v1::SuggestCorrespondencesRequest* request,
+    v1::SuggestCorrespondencesResponse* response) {
+  return new SuggestCall(registry_, streams_, matching_, *request, *response);
 }
 
 grpc::ServerUnaryReactor* SessionService::SetPlacements(grpc::CallbackServerContext* context,

@@ -10,11 +10,12 @@
 namespace posespace {
 
 // Authoring calls; what each does is said in session_service.proto.  Each handler translates,
-// calls, translates; those that decode, trace, check or copy much do so on `pool`.
+// calls, translates; those that decode, trace, check or copy much do so on `pool`, those that match
+// on `matching`.
 class SessionService final : public v1::SessionService::CallbackService {
  public:
-  SessionService(Registry& registry, LiveStreams& streams, ComputePool& pool)
-      : registry_(registry), streams_(streams), pool_(pool) {}
+  SessionService(Registry& registry, LiveStreams& streams, ComputePool& pool, ComputePool& matching)
+      : registry_(registry), streams_(streams), pool_(pool), matching_(matching) {}
 
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
@@ -45,6 +46,9 @@ class SessionService final : public v1::SessionService::CallbackService {
   grpc::ServerUnaryReactor* SetCorrespondences(grpc::CallbackServerContext* context,
                                                const v1::SetCorrespondencesRequest* request,
                                                v1::SetCorrespondencesResponse* response) override;
+  grpc::ServerUnaryReactor* SuggestCorrespondences(
+      grpc::CallbackServerContext* context, const v1::SuggestCorrespondencesRequest* request,
+      v1::SuggestCorrespondencesResponse* response) override;
   grpc::ServerUnaryReactor* SetPlacements(grpc::CallbackServerContext* context,
                                           const v1::SetPlacementsRequest* request,
                                           v1::SetPlacementsResponse* response) override;
@@ -62,6 +66,7 @@ class SessionService final : public v1::SessionService::CallbackService {
   Registry& registry_;
   LiveStreams& streams_;
   ComputePool& pool_;
+  ComputePool& matching_;
 };
 
 }  // namespace posespace

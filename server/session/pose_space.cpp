@@ -53,13 +53,20 @@ bool IsMarked(const BuildInputs& inputs, std::size_t i) {
 }
 
 // What a person should check in the pictures before trusting the blends.
-std::vector<std::string> WarningsOf(const MappingReport& report, const BuildInputs& inputs) {
+std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& inputs) {
+  const MappingReport& report = mapping.report;
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < report.confidence.size(); ++i) {
+    if (mapping.proposal.flips[i]) {
+      warnings.push_back("drawing '" + inputs.drawings[i]->id +
+                         "' seems to face the other way: suggest() shows it; if it does, put its "
+                         "mirror image");
+      continue;
+    }
     if (report.confidence[i] >= kLeastConfidence || IsMarked(inputs, i)) continue;
     warnings.push_back("please check shape '" + inputs.drawings[i]->id +
                        "': it is not clear which part of it is which part of the others; mark "
-                       "correspondences, or mirror it if it faces the other way");
+                       "correspondences");
   }
   if (report.steiner_vertices > kManySteinerVertices) {
     warnings.push_back("please check the matching: the drawings needed " +
@@ -176,7 +183,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inp
   Progress mapping_progress(progress, 0.0, kMappingShare);
   auto mapping = TRY(MapShapes(MatchingShapesOf(inputs.drawings), inputs.landmarks, inputs.options,
                                &mapping_progress));
-  auto warnings = WarningsOf(mapping.report, inputs);
+  auto warnings = WarningsOf(mapping, inputs);
 
   if (progress != nullptr) progress->EnterStage("weights", kMappingShare, 1.0);
   auto blend = TRY(RigidBlend::Prepare(mapping.mesh));

@@ -29,6 +29,15 @@ struct BuildRequest {
   double target_edge_length = 0.08;  // 0.02 .. 1
 };
 
+// What automatic matching would do with a session's drawings and marks.
+struct Suggestion {
+  std::vector<std::string> shape_ids;  // in the order of upload; the rest is by this order
+  std::vector<double> confidence;      // as in MatchedOutlines
+  FlipProposal proposal;
+  std::vector<Points> arcs;  // as of SampleTogether (matched_places.h)
+  std::string etag;          // of the session that was looked at
+};
+
 // What one look at a session shows.  A copy.
 struct SessionView {
   std::string id;
@@ -84,6 +93,11 @@ class Session {
   // at once when every drawing of its pose space is placed.
   // Fails  as CheckPlaced and CheckPlacements (placements.h); kEtagMismatch.
   Result<void> SetPlacements(Placements placements, const std::string& etag);
+
+  // What a build would match, at `samples` places; nothing is changed.  Runs on the caller's
+  // thread, outside the locks, as long as a build's matching. Fails  kNoShapes, kSessionNotFound
+  // (closed), and as MatchBoundaries.
+  Result<Suggestion> Suggest(int samples, Progress* progress) const;
 
   // Starts a build on `pool`, or attaches to the running or finished one of the same inputs.  A
   // build of other inputs cancels a running one; a failed or cancelled one is tried again.

@@ -145,13 +145,33 @@ TEST(MatchBoundaries, IgnoresColoursOfDrawingsPaintedOtherwise) {
 
 TEST(MatchBoundaries, IsLessSureOfADrawingThatFacesTheOtherWay) {
   const Points figure = Figure(120, 5, 100.0, 11);
-  Points mirrored = Points(figure.colwise().reverse());
-  mirrored.col(0) *= -1.0;
   const MatchedOutlines match =
-      Matched(ShapesOf({figure, Bent(figure, 0.02, 1), mirrored, Bent(figure, 0.02, 2)}));
+      Matched(ShapesOf({figure, Bent(figure, 0.02, 1), Mirrored(figure), Bent(figure, 0.02, 2)}));
   EXPECT_LT(match.confidence[2], 0.5);
   for (const int i : {0, 1, 3}) EXPECT_GT(match.confidence[i], match.confidence[2]);
   EXPECT_THAT(match.confidence, Each(AllOf(Gt(0.0), Le(1.0))));
+}
+
+TEST(MatchBoundaries, ProposesToFlipTheFewWhichFaceTheOtherWay) {
+  const Points figure = Figure(120, 5, 100.0, 11);
+  const std::vector<Points> outlines = {Bent(figure, 0.02, 1), Mirrored(Bent(figure, 0.02, 2)),
+                                        Bent(figure, 0.02, 3), Bent(figure, 0.02, 4),
+                                        Mirrored(Bent(figure, 0.02, 5))};
+  const FlipProposal proposal = Matched(ShapesOf(outlines)).proposal;
+  EXPECT_THAT(proposal.flips, ElementsAre(false, true, false, false, true));
+  EXPECT_GT(proposal.gain, 1.05);
+}
+
+TEST(MatchBoundaries, ProposesNoFlipOfDrawingsThatFaceAlikeOrAreMarked) {
+  const Points figure = Figure(120, 5, 100.0, 11);
+  const std::vector<Points> alike = {figure, Bent(figure, 0.03, 1), Bent(figure, 0.03, 2)};
+  const std::vector<Points> opposed = {figure, Mirrored(figure), Bent(figure, 0.03, 2)};
+  const std::vector<Landmark> mark = {{{RowOf(figure, 0), RowOf(opposed[1], 0), {}}}};
+  for (const MatchedOutlines& match :
+       {Matched(ShapesOf(alike)), Matched(ShapesOf(opposed), mark)}) {
+    EXPECT_THAT(match.proposal.flips, ElementsAre(false, false, false));
+    EXPECT_EQ(match.proposal.gain, 1.0);
+  }
 }
 
 TEST(MatchBoundaries, StopsWhenCancelledBeforeOrOnTheWay) {

@@ -80,6 +80,13 @@ inline void ExpectRingsFollowOutlines(const MatchedOutlines& match,
   }
 }
 
+// The drawing seen in a mirror, positively oriented again.
+inline Points Mirrored(const Points& ring) {
+  Points mirrored = ring.colwise().reverse();
+  mirrored.col(0) *= -1.0;
+  return mirrored;
+}
+
 // A drawing and the same with its limbs bent about: angles and lengths change along the outline.
 inline Points Bent(const Points& ring, double amount, std::uint32_t seed) {
   Sequence next(seed);

@@ -44,6 +44,7 @@ from posespace.results import (
     Mesh,
     SessionState,
     Shape,
+    Suggestion,
     TexturePlacement,
 )
 from posespace.session import Session
@@ -74,6 +75,7 @@ __all__ = [
     "Session",
     "SessionState",
     "Shape",
+    "Suggestion",
     "TexturePlacement",
     "Unauthenticated",
     "Unavailable",

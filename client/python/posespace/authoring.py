@@ -14,8 +14,10 @@ from posespace.channel import Channel
 from posespace.errors import InvalidArgument
 from posespace.messages import Place
 from posespace.pictures import Picture, picture_bytes
-from posespace.results import Build, BuildReport, SessionState, Shape
+from posespace.results import Build, BuildReport, SessionState, Shape, Suggestion
 from posespace.v1 import session_service_pb2
+
+_MATCHING = 120.0  # seconds: the service's limit for a build unless it was told otherwise
 
 
 class Authoring:
@@ -155,6 +157,29 @@ class Authoring:
         )
         changed = self._channel.call(self._channel.sessions.SetCorrespondences, request)
         return messages.session_state(changed.session)
+
+    def suggest(self, *, samples: int | None = None, timeout: float = _MATCHING) -> Suggestion:
+        """What automatic matching would do with the drawings and marks as they are.
+
+            found = session.suggest()
+            for shape_id in found.flips:                 # they seem to face the other way:
+                show(shape_id, found.confidence, found.arcs, found.starts)    # ask a person, then
+                session.put_shape(shape_id, image=mirrored[shape_id], replace=True)
+
+        Nothing is changed: flips are proposals, which are wrong for a drawing that only looks as if
+        it faced the other way.
+
+        samples  Places of the outline to answer in `arcs`, 1 to 1024; 64 by default.
+        timeout  Seconds to wait.
+
+        Raises NotBuilt (NO_SHAPES) without drawings, InvalidArgument when drawings or marks
+        contradict each other, DeadlineExceeded.
+        """
+        request = messages.make(
+            session_service_pb2.SuggestCorrespondencesRequest, session_id=self._id, samples=samples
+        )
+        suggest = self._channel.sessions.SuggestCorrespondences
+        return messages.suggestion(self._channel.call(suggest, request, timeout=timeout))
 
     def set_placements(self, placements: Mapping[str, Place], *, etag: str = "") -> SessionState:
         """Places the drawings in pose space; a built session follows at once, with a new revision.

@@ -106,20 +106,28 @@ class Channel:
         except ValueError as error:  # the transport's way to say that the channel is closed
             raise Unavailable(f"the client of {self.address} cannot call: {error}") from None
 
-    def call(self, method: Any, request: Any, *, patience: float | None = None) -> Any:
+    def call(
+        self,
+        method: Any,
+        request: Any,
+        *,
+        timeout: float | None = None,
+        patience: float | None = None,
+    ) -> Any:
         """The answer of a call, or posespace.Error.
 
+        timeout   Seconds that it may take; the channel's own by default.
         patience  Seconds in which a refused call may be tried again, each time with the whole
                   timeout; by default all tries share the timeout.
         """
-        give_up = time.monotonic() + (self.timeout if patience is None else patience)
+        limit = self.timeout if timeout is None else timeout
+        give_up = time.monotonic() + (limit if patience is None else patience)
         while True:
             try:
                 shared = max(0.0, give_up - time.monotonic())
-                timeout = shared if patience is None else self.timeout
-                return self.begin(method, request, timeout)
+                return self.begin(method, request, shared if patience is None else limit)
             except grpc.RpcError as error:
-                refusal = self.error_of(error, self.timeout, request)
+                refusal = self.error_of(error, limit, request)
             if not _pause_before_another_try(refusal, give_up):
                 raise refusal
 

@@ -201,6 +201,21 @@ def shape(message: session_service_pb2.Shape) -> results.Shape:
     )
 
 
+def suggestion(
+    message: session_service_pb2.SuggestCorrespondencesResponse,
+) -> results.Suggestion:
+    """What automatic matching would do."""
+    arcs = {each.shape_id: np.array(each.arc.coordinates).reshape(-1, 2) for each in message.shapes}
+    return results.Suggestion(
+        confidence={each.shape_id: each.confidence for each in message.shapes},
+        flips=[each.shape_id for each in message.shapes if each.flip],
+        flip_gain=message.flip_gain,
+        arcs=arcs,
+        starts={shape_id: (float(arc[0, 0]), float(arc[0, 1])) for shape_id, arc in arcs.items()},
+        etag=message.etag,
+    )
+
+
 def report(message: geometry_pb2.BuildReport) -> results.BuildReport:
     """How a build went."""
     return results.BuildReport(

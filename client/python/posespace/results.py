@@ -46,6 +46,28 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
+class Suggestion:
+    """What automatic matching would do with the drawings and marks as they were.
+
+    confidence  Drawing -> how clear its matching is, in (0, 1]; below 0.5 look at it.
+    flips       Drawings that would fit the others better seen in a mirror.
+    flip_gain   How much better with all of them: the cost of matching as they are over that with
+                the flips, at least 1.05; 1 when there are none.
+    arcs        Drawing -> places around its outline (M, 2), drawing pixels; row k of every drawing
+                is the same place.
+    starts      Drawing -> row 0 of its arc, where all outlines turn most: a tip or a notch.
+    etag        Of the session that was looked at.
+    """
+
+    confidence: dict[str, float]
+    flips: list[str]
+    flip_gain: float
+    arcs: dict[str, NDArray[np.float64]] = field(repr=False)
+    starts: dict[str, Point]
+    etag: str
+
+
+@dataclass(frozen=True, eq=False)
 class BuildReport:
     """How a build went.
 

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What matching would do, before anything is built."""
+
+from __future__ import annotations
+
+import numpy as np
+import posespace
+import pytest
+from synthetic_drawings import WALK, figure, star, wavy_blob
+
+# One arm up: seen in a mirror it is another drawing.
+WAVES = {
+    "a": {"left_arm": -35, "right_arm": 115, "left_leg": -12, "right_leg": 24},
+    "b": {"left_arm": -40, "right_arm": 120, "left_leg": -15, "right_leg": 20},
+    "c": {"left_arm": -45, "right_arm": 125, "left_leg": -10, "right_leg": 28},
+}
+
+
+def put_waves(session, mirrored=()):
+    for name, pose in WAVES.items():
+        pixels = figure(**pose)
+        session.put_shape(name, image=pixels[:, ::-1] if name in mirrored else pixels)
+
+
+def test_it_shows_the_same_places_on_every_drawing(session):
+    for name in ("step", "wave", "stand"):
+        session.put_shape(name, image=figure(**WALK[name]))
+    found = session.suggest()
+    assert list(found.arcs) == ["step", "wave", "stand"]
+    for name, arc in found.arcs.items():
+        assert arc.shape == (64, 2)
+        assert tuple(arc[0]) == found.starts[name]
+        assert 0 < found.confidence[name] <= 1
+    # The figure's left foot is the outline's lowest place left of the middle, in every drawing.
+    feet = {
+        name: max(range(64), key=lambda k: (arc[k, 0] < 90) * arc[k, 1])
+        for name, arc in found.arcs.items()
+    }
+    assert np.ptp(list(feet.values())) <= 2
+    assert found.etag == session.state().etag
+
+
+def test_it_changes_nothing(session):
+    put_waves(session, mirrored="b")
+    before = session.state()
+    session.suggest()
+    after = session.state()
+    assert after.etag == before.etag and after.build is None
+    assert session.shape("b").warnings == []
+
+
+def test_it_proposes_to_flip_a_drawing_that_faces_the_other_way(session):
+    put_waves(session, mirrored="b")
+    found = session.suggest()
+    assert found.flips == ["b"]
+    assert found.flip_gain > 1.05
+    report = session.build()
+    assert any("'b' seems to face the other way" in warning for warning in report.warnings)
+
+
+def test_a_build_says_nothing_of_flips_when_all_face_alike(session):
+    put_waves(session)
+    found = session.suggest()
+    assert found.flips == [] and found.flip_gain == 1
+    assert not any("the other way" in warning for warning in session.build().warnings)
+
+
+def test_marks_decide_what_it_shows(session):
+    for name in ("a", "b"):
+        session.put_shape(name, polygon=star())
+    ring = session.shape("a").outline[0]
+    tip, next_tip = ring[0], ring[2]
+    session.set_correspondences([{"a": tip, "b": next_tip}])
+    found = session.suggest(samples=1000)
+    at = np.linalg.norm(found.arcs["a"] - tip, axis=1).argmin()
+    assert np.linalg.norm(found.arcs["b"][at] - next_tip) < 2
+
+
+@pytest.mark.parametrize("samples", [1, 1024])
+def test_it_samples_as_finely_as_asked(session, samples):
+    session.put_shape("star", polygon=star())
+    assert session.suggest(samples=samples).arcs["star"].shape == (samples, 2)
+
+
+@pytest.mark.parametrize("samples", [0, -1, 1025])
+def test_it_refuses_other_numbers_of_samples(session, samples):
+    session.put_shape("star", polygon=star())
+    with pytest.raises(posespace.InvalidArgument, match="samples"):
+        session.suggest(samples=samples)
+
+
+def test_it_needs_a_drawing(session):
+    with pytest.raises(posespace.NotBuilt) as refused:
+        session.suggest()
+    assert refused.value.reason == "NO_SHAPES"
+
+
+def test_it_is_stopped_with_the_caller(session):
+    for k in range(24):
+        session.put_shape(f"s{k}", polygon=wavy_blob(5 + k, 0.2))
+    with pytest.raises(posespace.DeadlineExceeded):
+        session.suggest(timeout=0.05)
+    session.delete()
