@@ -56,8 +56,9 @@ def test_header_guards_name_their_path():
         if path.suffix != ".h":
             continue
         relative = path.relative_to(ROOT)
-        parts = relative.parts[1:] if relative.parts[0] == "server" else relative.parts
-        guard = "POSESPACE_" + re.sub(r"[^A-Z0-9]", "_", "/".join(parts).upper()) + "_"
+        included_as = str(relative).removeprefix("server/").removeprefix("client/cpp/include/")
+        words = "posespace/" + included_as.removeprefix("posespace/")
+        guard = re.sub(r"[^A-Z0-9]", "_", words.upper()) + "_"
         text = path.read_text()
         if f"#ifndef {guard}\n#define {guard}\n" not in text:
             wrong.append(f"{relative}: expected {guard}")

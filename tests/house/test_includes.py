@@ -78,6 +78,28 @@ def test_clients_include_nothing_of_the_server():
         f"{path.relative_to(ROOT)} includes {header}"
         for path in sources(ROOT / "client")
         for header in includes(path)
-        if header.split("/")[0] in MAY_USE
+        if header.split("/")[0] in {*MAY_USE, "server"}
     ]
     assert not wrong, "\n".join(wrong)
+
+
+PUBLIC = ROOT / "client/cpp/include/posespace"
+STANDARD = re.compile(r"[a-z_]+")  # <vector>, not <grpcpp/channel.h>
+
+
+def test_public_headers_of_the_cpp_client_need_the_standard_library_alone():
+    own = {f"posespace/{path.name}" for path in PUBLIC.glob("*.h")}
+    assert "posespace/client.h" in own
+    wrong = [
+        f"{path.name} includes {header}"
+        for path in sources(PUBLIC)
+        for header in includes(path)
+        if header not in own and not STANDARD.fullmatch(header)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_public_headers_of_the_cpp_client_name_no_type_of_the_wire():
+    wire = re.compile(r"\b(?:grpc|google|protobuf|v1)\s*::|\bgrpc_\w+")
+    wrong = [path.name for path in sources(PUBLIC) if wire.search(path.read_text())]
+    assert not wrong
