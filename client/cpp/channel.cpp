@@ -13,7 +13,6 @@
 #include <grpcpp/support/channel_arguments.h>
 
 #include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <random>
@@ -89,27 +88,25 @@ grpc::Status Ask(grpc::GenericStub& stub, const std::string& path, const grpc::B
 class Channel::Transport {
  public:
   explicit Transport(const std::string& address)
-      : channel_(
-            grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), Settings())),
-        stub_(channel_) {}
+      : stub_(grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), Settings())) {}
 
-  // To begin a call with.  gRPC notices that a connection has broken only while somebody waits for
-  // it; a call over one that broke unseen would fail though the service is there.
+  // To begin a call with.
+  //
+  // gRPC notices that a connection has broken only while somebody polls, and a call over one that
+  // broke unseen would fail though the service is there.  Polling any queue of the process takes
+  // note of one event of any connection.
   grpc::GenericStub& stub() {
-    const auto now = Clock::now();
-    const auto idle = now - last_used_.exchange(now);
-    if (idle > kLongIdle && channel_->GetState(/*try_to_connect=*/false) == GRPC_CHANNEL_READY) {
-      channel_->WaitForStateChange(GRPC_CHANNEL_READY, GprTime(now + kLook));
-    }
+    void* tag = nullptr;
+    bool ok = false;
+    for (int look = 0; look < kLooks; ++look) looks_.AsyncNext(&tag, &ok, GprTime(Clock::now()));
     return stub_;
   }
 
  private:
-  static constexpr std::chrono::milliseconds kLongIdle{20}, kLook{1};
+  static constexpr int kLooks = 4;
 
-  const std::shared_ptr<grpc::Channel> channel_;
   grpc::GenericStub stub_;
-  std::atomic<Clock::time_point> last_used_{Clock::now()};
+  grpc::CompletionQueue looks_;
 };
 
 Channel::Channel(const std::string& address, const ClientOptions& options)

@@ -147,9 +147,10 @@ grpc::ByteBuffer BytesOf(const MessageLite& message) {
 gpr_timespec GprTime(Clock::time_point time) {
   if (time == Clock::time_point::max()) return gpr_inf_future(GPR_CLOCK_MONOTONIC);
   const auto remaining = std::chrono::duration_cast<std::chrono::microseconds>(time - Clock::now());
-  return gpr_time_add(
-      gpr_now(GPR_CLOCK_MONOTONIC),
-      gpr_time_from_micros(std::max<std::int64_t>(0, remaining.count()), GPR_TIMESPAN));
+  // gRPC rounds up to milliseconds, and so would wait for one.
+  if (remaining.count() <= 0) return gpr_inf_past(GPR_CLOCK_MONOTONIC);
+  return gpr_time_add(gpr_now(GPR_CLOCK_MONOTONIC),
+                      gpr_time_from_micros(remaining.count(), GPR_TIMESPAN));
 }
 
 FailedCall Failed(const grpc::Status& status) {
