@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "drawing/image.h"
@@ -15,14 +16,23 @@ struct DecodeLimits {
   std::int64_t max_pixels = 32'000'000;  // read from the header, before any pixel is decoded
 };
 
-// Bytes of a picture file -> pixels.  PNG of any colour type and depth.
-// Hostile bytes are safe: they fail with kImageUndecodable (says what is wrong: not a PNG, cut
-// short, bad checksum) or kImageTooLarge (says size and limit), nothing else.
-// Pure; call from any thread.
-Result<Image> DecodeImage(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
+struct DecodedImage : Image {
+  std::vector<std::string> warnings;  // what was done to the file's pixels, for a person to read
+};
 
-// Pixels -> the bytes of a PNG file; none for an image without pixels.
-std::vector<std::uint8_t> EncodePng(const Image& image);
+// Bytes of a picture file -> pixels.  The format is told by the first bytes:
+//
+//   PNG   of any colour type and depth
+//   JPEG  baseline or progressive, 8 bits; grey, YCbCr, RGB, CMYK (converted without its profile);
+//         turned as its EXIF orientation says; both are reported
+//   WebP  lossy or lossless, with or without alpha; not animated
+//
+// Samples are taken as sRGB whatever profile the file carries, as game engines do.
+// Hostile bytes are safe: they fail with kImageUndecodable (says what is wrong: another format and
+// which, cut short, damaged) or kImageTooLarge (says size and limit), nothing else.
+// Pure; call from any thread.
+Result<DecodedImage> DecodeImage(std::span<const std::uint8_t> bytes,
+                                 const DecodeLimits& limits = {});
 
 }  // namespace posespace
 

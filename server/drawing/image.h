@@ -30,6 +30,8 @@ struct Texture {
   Image image;
   Point origin = Point::Zero();
   double scale = 1.0;
+
+  Point ToDrawing(const Point& texel) const { return origin + texel / scale; }
 };
 
 }  // namespace posespace

@@ -9,6 +9,7 @@
 
 #include "drawing/detached_parts.h"
 #include "drawing/outline_colours.h"
+#include "drawing/pixel_placement.h"
 #include "drawing/raster_ring.h"
 #include "drawing/working_picture.h"
 #include "geometry/polygon.h"
@@ -66,17 +67,17 @@ std::vector<Part> MeasureParts(const cv::Mat1i& part_of, int parts, const Image&
   return measured;
 }
 
-void WarnOfDroppedParts(std::vector<Part> dropped, std::vector<std::string>* warnings) {
+void WarnOfDroppedParts(std::vector<Part> dropped, const PixelPlacement& placement,
+                        std::vector<std::string>* warnings) {
   std::erase_if(dropped, [](const Part& part) { return part.painted == 0; });
   std::sort(dropped.begin(), dropped.end(), [](const Part& a, const Part& b) {
     return std::tuple(-a.painted, a.top, a.left) < std::tuple(-b.painted, b.top, b.left);
   });
   for (std::size_t k = 0; k < std::min(kPartsNamed, dropped.size()); ++k) {
     const Part& part = dropped[k];
-    warnings->push_back("a detached part of " + std::to_string(part.right - part.left + 1) + " x " +
-                        std::to_string(part.bottom - part.top + 1) + " pixels at (" +
-                        std::to_string(part.left) + ", " + std::to_string(part.top) +
-                        ") was left out");
+    warnings->push_back("a detached part of " +
+                        placement.SizeText(part.right - part.left + 1, part.bottom - part.top + 1) +
+                        " pixels at " + placement.PlaceText(part.left, part.top) + " was left out");
   }
   if (dropped.size() > kPartsNamed) {
     warnings->push_back(Counted(dropped.size() - kPartsNamed, "more, smaller detached part was",
@@ -154,7 +155,8 @@ Result<std::vector<Points>> HoleRings(const cv::Mat1b& painted, const cv::Mat1i&
   return holes;
 }
 
-Result<Outline> Trace(const Image& image, const OutlineOptions& options) {
+Result<Outline> Trace(const Image& image, const PixelPlacement& placement,
+                      const OutlineOptions& options) {
   const PaintedBox box = FindPainted(image, options.threshold);
   const auto too_small = [](std::int64_t painted) {
     return Error{ErrorCode::kOutlineTooSmall,
@@ -209,32 +211,47 @@ Result<Outline> Trace(const Image& image, const OutlineOptions& options) {
                                        "holes were filled; their transparency is kept"));
   }
   measured[0].painted = measured[body].painted = 0;  // neither the background nor the body
-  WarnOfDroppedParts(std::move(measured), &outline.warnings);
+  WarnOfDroppedParts(std::move(measured), placement, &outline.warnings);
+  outline.outer = placement.ToDrawing(std::move(outline.outer));
+  for (Points& hole : outline.holes) hole = placement.ToDrawing(std::move(hole));
   return outline;
 }
 
-}  // namespace
+Error OutOfRange(const std::string& field, int value, int low, int high) {
+  const std::string message = field + " is " + std::to_string(value) + "; it must lie in " +
+                              std::to_string(low) + " .. " + std::to_string(high);
+  return Error{ErrorCode::kInvalidOption, message, {{field, message}}};
+}
 
-Result<Outline> TraceOutline(const Image& image, const OutlineOptions& options) {
-  const auto refuse = [](const std::string& field, int value, int low, int high) {
-    const std::string message = field + " is " + std::to_string(value) + "; it must lie in " +
-                                std::to_string(low) + " .. " + std::to_string(high);
-    return Error{ErrorCode::kInvalidOption, message, {{field, message}}};
-  };
-  if (options.threshold < 1 || options.threshold > 255) {
-    return refuse("threshold", options.threshold, 1, 255);
-  }
+Result<Outline> CheckedTrace(const Image& image, const PixelPlacement& placement,
+                             const OutlineOptions& options) {
+  TRY(CheckThreshold(options.threshold));
   if (options.working_size < kMinWorkingSize || options.working_size > kMaxWorkingSize) {
-    return refuse("working_size", options.working_size, kMinWorkingSize, kMaxWorkingSize);
+    return OutOfRange("working_size", options.working_size, kMinWorkingSize, kMaxWorkingSize);
   }
   // Pictures are traced side by side; OpenCV's own threads would only get in the way of streams.
   static const bool one_thread = (cv::setNumThreads(1), true);
   static_cast<void>(one_thread);
   try {
-    return Trace(image, options);
+    return Trace(image, placement, options);
   } catch (const cv::Exception& exception) {
     return Error{ErrorCode::kInternal, std::string("OpenCV: ") + exception.what(), {}};
   }
+}
+
+}  // namespace
+
+Result<void> CheckThreshold(int threshold) {
+  if (threshold >= 1 && threshold <= 255) return {};
+  return OutOfRange("threshold", threshold, 1, 255);
+}
+
+Result<Outline> TraceOutline(const Image& image, const OutlineOptions& options) {
+  return CheckedTrace(image, {}, options);
+}
+
+Result<Outline> TraceOutline(const Texture& texture, const OutlineOptions& options) {
+  return CheckedTrace(texture.image, {texture.origin, texture.scale}, options);
 }
 
 }  // namespace posespace

@@ -18,6 +18,9 @@ struct OutlineOptions {
   int max_points = 20'000;  // of one ring
 };
 
+// Fails with kInvalidOption, field threshold, unless the threshold lies in 1 .. 255.
+Result<void> CheckThreshold(int threshold);
+
 // What the mapping needs of a drawing.
 struct Outline {
   Points outer;               // K x 2, simple, positively oriented, drawing pixels
@@ -40,19 +43,32 @@ struct Outline {
 // Cost      a few milliseconds per 512 x 512 working pixels, plus one pass over the picture.
 Result<Outline> TraceOutline(const Image& image, const OutlineOptions& options = {});
 
-// The outline given as rings: checked, oriented, repeated and needless points removed.
-// Holes are checked (simple, inside the outline, apart from each other), kept in `holes` and
-// counted in holes_filled.  Errors name points and edges by the rows that were given.
+// The same of a texture, in drawing pixels wherever its texels lie.
+Result<Outline> TraceOutline(const Texture& texture, const OutlineOptions& options = {});
+
+// The outline given as rings.  What is done to them is said in `warnings`:
+//
+//   cleaned    repeated points, a first point repeated at the end, and points within straight runs
+//              are dropped; either orientation is taken.  The other points are kept as they are.
+//   retraced   when a ring crosses or touches itself: the rings are painted, inside by the non-zero
+//              rule, and traced as a picture of options.working_size.
+//
+// Holes are checked (inside the outline, apart from it and from each other), kept in `holes` and
+// counted in holes_filled.  Errors name points and edges by the rows that were given, in fields
+// outer, outer[17], holes, holes[2], holes[2][5].
 //
 // Fails     kOutlineTooSmall (fewer than 3 distinct points, or an area below 1e-6),
-//           kOutlineNotSimple (names both edges and where they meet), kOutlineTooLong (the outline,
-//           or all holes together), kInvalidOption (not finite, or a coordinate beyond 1e6).
+//           kOutlineNotSimple (a hole that meets another ring: names both edges and where),
+//           kOutlineTooLong (the outline, or all holes together), kInvalidOption (not finite, or a
+//           coordinate beyond 1e6); when retraced also as TraceOutline.
 Result<Outline> OutlineFromRings(const Points& outer, std::span<const Points> holes,
                                  const OutlineOptions& options = {});
 
-// The rings painted in one colour (sRGB, opaque) at working size, antialiased: the texture of a
-// polygon that came without a picture.
-Texture PaintRings(const Outline& outline, int working_size = 512);
+// Rings painted in one colour (sRGB, opaque), antialiased: the texture of a polygon that came
+// without a picture.  Inside is what the outer ring surrounds and the holes do not, each by the
+// non-zero rule, so rings may cross themselves.  The outer ring's longer side gets `working_size`
+// texels.  Requires an outer ring of some extent; nothing is painted of fewer than 3 points.
+Texture PaintRings(const Points& outer, std::span<const Points> holes, int working_size = 512);
 
 }  // namespace posespace
 

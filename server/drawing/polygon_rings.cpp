@@ -25,10 +25,11 @@ std::string Near(const Point& p) {
 
 // A ring being checked: what it is called, and which row of the client's each of its rows is.
 struct NamedRing {
-  std::string field;  // as in Violation: "outline", "holes[2]"
+  std::string field;  // as in Violation: "outer", "holes[2]"
   std::string name;   // as in a sentence: "the outline", "hole 2"
   Points points;
   std::vector<int> given_row;
+  std::string crossing;  // where it meets itself, if it does: "edge 0 meets edge 2 near (5, 5)"
 
   std::string Field(int k) const { return field + "[" + std::to_string(given_row[k]) + "]"; }
   std::string Edge(int k) const { return "edge " + std::to_string(given_row[k]); }
@@ -64,18 +65,22 @@ Result<void> CheckCoordinates(const NamedRing& ring, int max_points) {
   return {};
 }
 
-// Removes rows that repeat their neighbour or lie on the segment between their neighbours.
-void RemoveNeedlessRows(NamedRing* ring) {
+// How many rows were dropped, and why.
+struct Dropped {
+  int closing = 0;   // the first point again at the end
+  int repeated = 0;  // a point right after itself
+  int straight = 0;  // on the segment between its neighbours
+};
+
+// Keeps the rows for which `is_needless(before, row, after)` is false, each asked with the
+// neighbours that are left; returns how many went.
+template <typename Predicate>
+int DropRows(std::vector<int>* rows, const Predicate& is_needless) {
   std::vector<int> kept;
-  const auto point = [&](int row) { return Row(ring->points, row); };
-  const auto is_needless = [&](int before, int row, int after) {
-    return point(row) == point(before) || IsOnSegment(point(row), point(before), point(after));
-  };
-  for (int row = 0; row < ring->points.rows(); ++row) {
+  for (const int row : *rows) {
     while (kept.size() >= 2 && is_needless(kept[kept.size() - 2], kept.back(), row)) {
       kept.pop_back();
     }
-    if (!kept.empty() && point(kept.back()) == point(row)) kept.pop_back();
     kept.push_back(row);
   }
   // The same across the seam.
@@ -92,16 +97,67 @@ void RemoveNeedlessRows(NamedRing* ring) {
     }
   }
   kept.erase(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(first));
-  Points points(static_cast<Eigen::Index>(kept.size()), 2);
-  for (std::size_t k = 0; k < kept.size(); ++k) points.row(k) = ring->points.row(kept[k]);
-  ring->points = std::move(points);
-  ring->given_row = std::move(kept);
+  const int dropped = static_cast<int>(rows->size() - kept.size());
+  *rows = std::move(kept);
+  return dropped;
 }
 
-// Checks one ring by itself, and brings it to the shape that Outline promises.
-Result<void> CheckRing(NamedRing* ring, int max_points, int orientation) {
+Dropped DropNeedlessRows(NamedRing* ring) {
+  Dropped dropped;
+  const auto point = [&](int row) { return Row(ring->points, row); };
+  std::vector<int> rows(ring->points.rows());
+  std::iota(rows.begin(), rows.end(), 0);
+  while (rows.size() > 1 && point(rows.back()) == point(rows.front())) {
+    rows.pop_back();
+    ++dropped.closing;
+  }
+  const auto repeats = [&](int a, int b) { return point(a) == point(b); };
+  // The last of them stays, where the edge begins that is longer than nothing.
+  const auto distinct = std::unique(rows.rbegin(), rows.rend(), repeats).base();
+  dropped.repeated = static_cast<int>(distinct - rows.begin());
+  rows.erase(rows.begin(), distinct);
+  dropped.straight = DropRows(&rows, [&](int before, int row, int after) {
+    return IsOnSegment(point(row), point(before), point(after));
+  });
+  Points points(static_cast<Eigen::Index>(rows.size()), 2);
+  for (std::size_t k = 0; k < rows.size(); ++k) points.row(k) = point(rows[k]).transpose();
+  ring->points = std::move(points);
+  ring->given_row = std::move(rows);
+  return dropped;
+}
+
+void WarnOfDropped(const Dropped& dropped, const std::string& name,
+                   std::vector<std::string>* warnings) {
+  const auto warn = [&](int count, const std::string& one, const std::string& many) {
+    if (count == 0) return;
+    warnings->push_back(name + ": " + (count == 1 ? one : std::to_string(count) + many) +
+                        " dropped");
+  };
+  warn(dropped.closing, "the first point, repeated at the end, was",
+       " repetitions of the first point at the end were");
+  warn(dropped.repeated, "1 repeated point was", " repeated points were");
+  warn(dropped.straight, "1 point within a straight run was", " points within straight runs were");
+}
+
+// +1 for a positive ring, -1 for a negative one.  Exact: at its lowest-leftmost point a simple ring
+// turns the way it runs.
+int OrientationOfSimple(const Points& ring) {
+  const int n = static_cast<int>(ring.rows());
+  int corner = 0;
+  for (int k = 1; k < n; ++k) {
+    if (std::pair(ring(k, 0), ring(k, 1)) < std::pair(ring(corner, 0), ring(corner, 1))) {
+      corner = k;
+    }
+  }
+  return Orientation(Row(ring, corner + n - 1), Row(ring, corner), Row(ring, corner + 1));
+}
+
+// Checks one ring by itself, and brings it to the shape that Outline promises, unless it crosses
+// itself.
+Result<void> CheckRing(NamedRing* ring, int max_points, int orientation,
+                       std::vector<std::string>* warnings) {
   TRY(CheckCoordinates(*ring, max_points));
-  RemoveNeedlessRows(ring);
+  const Dropped dropped = DropNeedlessRows(ring);
   const Points& points = ring->points;
   const int n = static_cast<int>(points.rows());
   const auto too_small = [&](const std::string& why) {
@@ -113,27 +169,17 @@ Result<void> CheckRing(NamedRing* ring, int max_points, int orientation) {
     is_flat = Orientation(Row(points, 0), Row(points, 1), Row(points, k)) == 0;
   }
   if (is_flat) return too_small("has no area: all its points are on one line");
+  WarnOfDropped(dropped, ring->name, warnings);
   if (const auto crossing = FindCrossing(points)) {
     const auto [i, j] = *crossing;
-    const std::string where = Near(MeetingPoint(points, i, points, j));
-    return Error{ErrorCode::kOutlineNotSimple,
-                 ring->name + ": " + ring->Edge(i) + " meets " + ring->Edge(j) + where,
-                 {{ring->Field(i), "this edge meets " + ring->Edge(j) + where},
-                  {ring->Field(j), "this edge meets " + ring->Edge(i) + where}}};
+    ring->crossing =
+        ring->Edge(i) + " meets " + ring->Edge(j) + Near(MeetingPoint(points, i, points, j));
+    return {};
   }
-  const double area = SignedArea(points);
-  if (!(std::abs(area) >= kMinArea)) {
+  if (!(std::abs(SignedArea(points)) >= kMinArea)) {
     return too_small("has an area below 1e-6 square pixels");
   }
-  // Exact: at its lowest-leftmost point a simple ring turns the way it runs.
-  int corner = 0;
-  for (int k = 1; k < n; ++k) {
-    if (std::pair(points(k, 0), points(k, 1)) < std::pair(points(corner, 0), points(corner, 1))) {
-      corner = k;
-    }
-  }
-  if (Orientation(Row(points, corner + n - 1), Row(points, corner), Row(points, corner + 1)) !=
-      orientation) {
+  if (OrientationOfSimple(points) != orientation) {
     // Edge k is named by its first row, which after turning round is the row that was its end.
     ring->points = points.colwise().reverse().eval();
     std::reverse(ring->given_row.begin(), ring->given_row.end() - 1);
@@ -179,8 +225,8 @@ std::optional<Meeting> FindMeeting(std::span<const NamedRing> rings) {
   return std::nullopt;
 }
 
-// Checks that the holes lie inside the outline (rings[0]), apart from it and from each other.
-Result<void> CheckNesting(std::span<const NamedRing> rings) {
+// Checks that the holes keep apart from the outline (rings[0]) and from each other.
+Result<void> CheckApart(std::span<const NamedRing> rings) {
   if (const auto meeting = FindMeeting(rings)) {
     const NamedRing &a = rings[meeting->ring_a], &b = rings[meeting->ring_b];
     const int k = meeting->edge_a, l = meeting->edge_b;
@@ -190,6 +236,12 @@ Result<void> CheckNesting(std::span<const NamedRing> rings) {
                  {{a.Field(k), "this edge meets " + b.name + where},
                   {b.Field(l), "this edge meets " + a.name + where}}};
   }
+  return {};
+}
+
+// Checks that the holes lie inside the outline (rings[0]) and not in each other.
+// Requires  rings that are simple and keep apart.
+Result<void> CheckNesting(std::span<const NamedRing> rings) {
   for (std::size_t h = 1; h < rings.size(); ++h) {
     const Point p = Row(rings[h].points, 0);
     const auto misplaced = [&](const std::string& how) {
@@ -207,12 +259,48 @@ Result<void> CheckNesting(std::span<const NamedRing> rings) {
   return {};
 }
 
+// The outline of what the rings surround, where they cross themselves.
+Result<Outline> Retraced(std::span<const NamedRing> rings, const OutlineOptions& options,
+                         std::vector<std::string> warnings) {
+  const NamedRing& crossed =
+      *std::find_if(rings.begin(), rings.end(), [](const auto& r) { return !r.crossing.empty(); });
+  std::vector<Points> holes;
+  for (const NamedRing& hole : rings.subspan(1)) holes.push_back(hole.points);
+  const Texture painted = PaintRings(rings[0].points, holes, options.working_size);
+  auto traced = TraceOutline(
+      painted, {.working_size = options.working_size, .max_points = options.max_points});
+  if (!traced) {
+    Error refused = std::move(traced).error();
+    refused.message = crossed.name + " crosses itself (" + crossed.crossing +
+                      "), and filled by the non-zero rule it cannot be traced: " + refused.message;
+    refused.where = {{crossed.field, refused.message}};
+    return refused;
+  }
+  warnings.push_back(crossed.name + " crosses itself (" + crossed.crossing +
+                     "): the rings were filled by the non-zero rule and traced anew, at " +
+                     std::to_string(options.working_size) + " points along the longer side");
+  warnings.insert(warnings.end(), traced->warnings.begin(), traced->warnings.end());
+  traced->warnings = std::move(warnings);
+  traced->colours.resize(0, 3);  // the paint's, not the drawing's
+  return traced;
+}
+
+// A rectangle along the axes, which may be the drawing itself but often is the page around it.
+bool IsUprightRectangle(const Points& ring) {
+  if (ring.rows() != 4) return false;
+  for (int k = 0; k < 4; ++k) {
+    const Point along = Row(ring, k + 1) - Row(ring, k);
+    if (along.x() != 0.0 && along.y() != 0.0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<Outline> OutlineFromRings(const Points& outer, std::span<const Points> holes,
                                  const OutlineOptions& options) {
   std::vector<NamedRing> rings;
-  rings.push_back({"outline", "the outline", outer, {}});
+  rings.push_back({"outer", "the outline", outer, {}, {}});
   std::int64_t hole_points = 0;
   for (const Points& hole : holes) hole_points += std::max<std::int64_t>(1, hole.rows());
   if (hole_points > options.max_points) {
@@ -223,19 +311,34 @@ Result<Outline> OutlineFromRings(const Points& outer, std::span<const Points> ho
   }
   for (const Points& hole : holes) {
     const std::string number = std::to_string(rings.size() - 1);
-    rings.push_back({"holes[" + number + "]", "hole " + number, hole, {}});
+    rings.push_back({"holes[" + number + "]", "hole " + number, hole, {}, {}});
   }
+  Outline outline;
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const int orientation = r == 0 ? 1 : -1;
-    TRY(CheckRing(&rings[r], options.max_points, orientation));
+    TRY(CheckRing(&rings[r], options.max_points, orientation, &outline.warnings));
+  }
+  TRY(CheckApart(rings));
+  if (std::any_of(rings.begin(), rings.end(), [](const auto& r) { return !r.crossing.empty(); })) {
+    return Retraced(rings, options, std::move(outline.warnings));
   }
   TRY(CheckNesting(rings));
 
-  Outline outline;
   outline.outer = std::move(rings[0].points);
   for (std::size_t r = 1; r < rings.size(); ++r)
     outline.holes.push_back(std::move(rings[r].points));
   outline.holes_filled = static_cast<int>(outline.holes.size());
+  if (outline.holes_filled > 0) {
+    outline.warnings.push_back(outline.holes_filled == 1
+                                   ? "1 hole was filled; its transparency is kept"
+                                   : std::to_string(outline.holes_filled) +
+                                         " holes were filled; their transparency is kept");
+  }
+  if (IsUprightRectangle(outline.outer)) {
+    outline.warnings.push_back(
+        "the outline is an upright rectangle; if that is the page around a drawing, send the "
+        "picture or the SVG document itself, which lose their paper");
+  }
   return outline;
 }
 

@@ -47,12 +47,13 @@ void AddEdge(Point a, Point b, int width, int height, std::vector<float>* differ
 
 }  // namespace
 
-Texture PaintRings(const Outline& outline, int working_size) {
+Texture PaintRings(const Points& outer, std::span<const Points> holes, int working_size) {
   Texture texture;
-  if (outline.outer.rows() < 3) return texture;
+  if (outer.rows() < 3) return texture;
   working_size = std::clamp(working_size, kMinWorkingSize, kMaxWorkingSize);
-  const Point low = outline.outer.colwise().minCoeff().transpose();
-  const Point extent = outline.outer.colwise().maxCoeff().transpose() - low;
+  const Point low = outer.colwise().minCoeff().transpose();
+  const Point high = outer.colwise().maxCoeff().transpose();
+  const Point extent = high - low;
   texture.scale = working_size / extent.maxCoeff();
   texture.origin = low - Point::Constant(kMargin / texture.scale);
   Image& image = texture.image;
@@ -60,26 +61,34 @@ Texture PaintRings(const Outline& outline, int working_size) {
   image.height = static_cast<int>(std::ceil(extent.y() * texture.scale)) + 2 * kMargin;
   const std::size_t texels = static_cast<std::size_t>(image.width) * image.height;
 
-  std::vector<float> differences(texels, 0.0f);
-  const auto add_ring = [&](const Points& ring) {
+  const auto add_ring = [&](const Points& ring, std::vector<float>* differences) {
     const auto texel_place = [&](Eigen::Index k) -> Point {
-      return (ring.row(k % ring.rows()).transpose() - texture.origin) * texture.scale;
+      // What a hole has outside the outline's box makes no difference there.
+      const Point p = ring.row(k % ring.rows()).transpose();
+      return (p.cwiseMax(low).cwiseMin(high) - texture.origin) * texture.scale;
     };
     for (Eigen::Index k = 0; k < ring.rows(); ++k) {
-      AddEdge(texel_place(k), texel_place(k + 1), image.width, image.height, &differences);
+      AddEdge(texel_place(k), texel_place(k + 1), image.width, image.height, differences);
     }
   };
-  add_ring(outline.outer);
-  for (const Points& hole : outline.holes) add_ring(hole);  // run the other way: taken out again
+  std::vector<float> filled(texels, 0.0f), cut(texels, 0.0f);
+  add_ring(outer, &filled);
+  for (const Points& hole : holes) add_ring(hole, &cut);
 
+  // The mean winding number in a texel, whose sign is the ring's orientation: beyond 1 the ring
+  // surrounds the texel more than once.
+  const auto share = [](double winding) { return std::min(1.0, std::abs(winding)); };
   image.rgba.resize(4 * texels);
   for (int y = 0; y < image.height; ++y) {
-    double coverage = 0.0;
+    double inside = 0.0, in_holes = 0.0;
     for (int x = 0; x < image.width; ++x) {
-      coverage += differences[static_cast<std::size_t>(y) * image.width + x];
+      const std::size_t k = static_cast<std::size_t>(y) * image.width + x;
+      inside += filled[k];
+      in_holes += cut[k];
       std::uint8_t* texel = image.at(x, y);
       std::copy(kInk.begin(), kInk.end(), texel);
-      texel[3] = static_cast<std::uint8_t>(std::lround(std::clamp(coverage, 0.0, 1.0) * 255.0));
+      const double coverage = share(inside) * (1.0 - share(in_holes));
+      texel[3] = static_cast<std::uint8_t>(std::lround(coverage * 255.0));
     }
   }
   return texture;

@@ -70,7 +70,8 @@ enum class ErrorCode {
 // The wire name of a code: kOutlineEmpty -> "OUTLINE_EMPTY".
 std::string_view ReasonName(ErrorCode code);
 
-// One thing that is wrong, and where: field is a path such as "shapes['walk'].outline[17]".
+// One thing that is wrong, and where: `field` is the request's own path, such as "image.data",
+// "polygon.holes[2][5]" or "tuples[3].points['walk']"; of a build, "shapes['walk'].outline[17]".
 struct Violation {
   std::string field;
   std::string description;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/convert.h"
 
-#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "rpc/shown_error.h"
+#include "session/ids.h"
 
 namespace posespace {
 namespace {
@@ -13,10 +14,6 @@ namespace {
 constexpr std::size_t kTextBytes = 1'024;  // of one warning or message
 constexpr int kDefaultSamples = 64;        // of a suggested matching
 constexpr int kMostSamples = 1'024;
-
-bool IsFinite(const v1::Point& point) {
-  return std::isfinite(point.x()) && std::isfinite(point.y());
-}
 
 Error Refusal(ErrorCode code, std::string field, std::string description) {
   return Error{code, field + " " + description, {{field, description}}};
@@ -32,37 +29,41 @@ Error Refusal(ErrorCode code, std::vector<Violation> where) {
 Result<Points> RingFromProto(const v1::Ring& ring, const std::string& field) {
   const int count = ring.coordinates_size();
   if (count % 2 != 0) {
-    return Refusal(ErrorCode::kInvalidOption, field + ".coordinates",
+    return Refusal(ErrorCode::kInvalidOption, field,
                    "has " + std::to_string(count) + " numbers: they should be pairs x y");
   }
-  Points points(count / 2, 2);
-  for (int k = 0; k < count; ++k) {
-    const double value = ring.coordinates(k);
-    if (!std::isfinite(value)) {
-      return Refusal(ErrorCode::kInvalidOption, field + ".coordinates[" + std::to_string(k) + "]",
-                     "is not finite");
-    }
-    points(k / 2, k % 2) = value;
-  }
-  return points;
+  return Points(Eigen::Map<const Points>(ring.coordinates().data(), count / 2, 2));
 }
 
 std::vector<std::uint8_t> BytesOf(const std::string& data) { return {data.begin(), data.end()}; }
 
+Result<ForegroundOptions> OptionsFromProto(v1::Foreground foreground, std::optional<int> threshold,
+                                           const std::string& field) {
+  switch (foreground) {
+    case v1::FOREGROUND_UNSPECIFIED:
+    case v1::FOREGROUND_ALPHA:
+      return ForegroundOptions{Foreground::kAlpha, threshold};
+    case v1::FOREGROUND_LIGHT:
+      return ForegroundOptions{Foreground::kLight, threshold};
+    case v1::FOREGROUND_DARK:
+      return ForegroundOptions{Foreground::kDark, threshold};
+    default:
+      return Refusal(ErrorCode::kInvalidOption, field + ".foreground",
+                     "is " + std::to_string(foreground) + ", which is not known here");
+  }
+}
+
+// The options of a message that says which pixels of a picture are the drawing.
+template <typename Message>
+Result<ForegroundOptions> OptionsFromProto(const Message& message, const std::string& field) {
+  const std::optional<int> threshold =
+      message.has_threshold() ? std::optional(message.threshold()) : std::nullopt;
+  return OptionsFromProto(message.foreground(), threshold, field);
+}
+
 Result<ShapeSource> ImageFromProto(const v1::ImageSource& image) {
-  if (image.foreground() != v1::FOREGROUND_UNSPECIFIED &&
-      image.foreground() != v1::FOREGROUND_ALPHA) {
-    return Refusal(ErrorCode::kInvalidOption, "image.foreground",
-                   "is " + std::to_string(image.foreground()) + ", which is not known here");
-  }
-  ImageSource source;
-  if (image.has_threshold()) source.threshold = image.threshold();
-  if (source.threshold < 1 || source.threshold > 255) {
-    return Refusal(ErrorCode::kInvalidOption, "image.threshold",
-                   "is " + std::to_string(source.threshold) + ", not 1 to 255");
-  }
-  source.data = BytesOf(image.data());
-  return ShapeSource(std::move(source));
+  const ForegroundOptions options = TRY(OptionsFromProto(image, "image"));
+  return ShapeSource(ImageSource{BytesOf(image.data()), options});
 }
 
 Result<ShapeSource> PolygonFromProto(const v1::PolygonSource& polygon) {
@@ -74,13 +75,6 @@ Result<ShapeSource> PolygonFromProto(const v1::PolygonSource& polygon) {
   }
   source.texture = BytesOf(polygon.texture());
   return ShapeSource(std::move(source));
-}
-
-Result<double> InRange(double value, double least, double most, const std::string& field) {
-  if (value >= least && value <= most) return value;
-  return Refusal(ErrorCode::kInvalidOption, field,
-                 "is " + std::to_string(value) + ", not " + std::to_string(least) + " to " +
-                     std::to_string(most));
 }
 
 void ToProto(const Point& point, v1::Point* out) {
@@ -145,26 +139,14 @@ Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request) {
   return refused;
 }
 
-Result<std::vector<Correspondence>> CorrespondencesFromProto(
-    const v1::SetCorrespondencesRequest& request) {
+std::vector<Correspondence> CorrespondencesFromProto(const v1::SetCorrespondencesRequest& request) {
   std::vector<Correspondence> tuples;
-  std::vector<Violation> empty, not_finite;
-  for (int t = 0; t < request.tuples_size(); ++t) {
-    const std::string field = "tuples[" + std::to_string(t) + "].points";
-    Correspondence tuple;
-    for (const auto& [shape_id, point] : request.tuples(t).points()) {
+  for (const v1::Correspondence& marks : request.tuples()) {
+    Correspondence& tuple = tuples.emplace_back();
+    for (const auto& [shape_id, point] : marks.points()) {
       tuple.emplace(shape_id, Point(point.x(), point.y()));
     }
-    if (tuple.empty()) empty.push_back({field, "is empty"});
-    for (const auto& [shape_id, point] : tuple) {
-      if (!point.allFinite()) {
-        not_finite.push_back({field + "['" + shape_id + "']", "is not finite"});
-      }
-    }
-    tuples.push_back(std::move(tuple));
   }
-  if (!empty.empty()) return Refusal(ErrorCode::kInvalidOption, std::move(empty));
-  if (!not_finite.empty()) return Refusal(ErrorCode::kLandmarkNotFinite, std::move(not_finite));
   return tuples;
 }
 
@@ -177,35 +159,23 @@ Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request) {
 
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) {
   Placements placements;
-  std::vector<Violation> unusable, not_finite;
-  for (int k = 0; k < request.placements_size(); ++k) {
-    const v1::Placement& placement = request.placements(k);
-    const std::string field = "placements[" + std::to_string(k) + "]";
-    if (!placement.has_at()) {
-      unusable.push_back({field + ".at", "is missing"});
-    } else if (!IsFinite(placement.at())) {
-      not_finite.push_back(
-          {field + ".at", "of shape '" + placement.shape_id() + "' is not finite"});
-    }
+  std::vector<Violation> unusable;
+  for (const v1::Placement& placement : request.placements()) {
+    const std::string field = "placements[" + Quoted(placement.shape_id()) + "]";
+    if (!placement.has_at()) unusable.push_back({field + ".at", "is missing"});
     const Point at(placement.at().x(), placement.at().y());
     if (!placements.emplace(placement.shape_id(), at).second) {
-      unusable.push_back({field + ".shape_id", "places '" + placement.shape_id() + "' again"});
+      unusable.push_back({field, "is given twice"});
     }
   }
   if (!unusable.empty()) return Refusal(ErrorCode::kInvalidOption, std::move(unusable));
-  if (!not_finite.empty()) return Refusal(ErrorCode::kPlacementNotFinite, std::move(not_finite));
   return placements;
 }
 
-Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options) {
+BuildRequest BuildRequestFromProto(const v1::BuildOptions& options) {
   BuildRequest request;
-  if (options.has_tolerance()) {
-    request.tolerance = TRY(InRange(options.tolerance(), 0.001, 0.2, "options.tolerance"));
-  }
-  if (options.has_target_edge_length()) {
-    request.target_edge_length =
-        TRY(InRange(options.target_edge_length(), 0.02, 1.0, "options.target_edge_length"));
-  }
+  if (options.has_tolerance()) request.tolerance = options.tolerance();
+  if (options.has_target_edge_length()) request.target_edge_length = options.target_edge_length();
   return request;
 }
 

@@ -13,26 +13,23 @@
 #include "session/session.h"
 
 // Authoring messages <-> session types; queries and frames are in query_convert.h.  Reading checks
-// every number: finite, in range, of the right count, enums known.  All functions are pure.
+// what only a message can get wrong: what is missing, given twice, odd, or not known here.  Numbers
+// are checked where they are used.  All functions are pure.
 
 namespace posespace {
 
-// Fails  kShapeSourceMissing, kInvalidOption (threshold, foreground, odd or non-finite
-// coordinates).
+// Fails  kShapeSourceMissing, kInvalidOption (foreground, an odd number of coordinates).
 Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request);
 
-// Fails  kLandmarkNotFinite, kInvalidOption (a tuple without points); all faults at once.
-Result<std::vector<Correspondence>> CorrespondencesFromProto(
-    const v1::SetCorrespondencesRequest& request);
+std::vector<Correspondence> CorrespondencesFromProto(const v1::SetCorrespondencesRequest& request);
 
 // How many places to sample.  Fails  kInvalidOption (not 1 to 1024).
 Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request);
 
-// Fails  kPlacementNotFinite, kInvalidOption (no place, a shape placed twice); all faults at once.
+// Fails  kInvalidOption (no place, a shape placed twice); all faults at once.
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request);
 
-// Fails  kInvalidOption (out of the range that session_service.proto gives).
-Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options);
+BuildRequest BuildRequestFromProto(const v1::BuildOptions& options);
 
 void ToProto(const SessionView& view, v1::Session* session);
 void ToProto(const Suggestion& suggestion, v1::SuggestCorrespondencesResponse* response);

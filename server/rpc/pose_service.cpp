@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "rpc/animate_stream.h"
 #include "rpc/call.h"
 #include "rpc/convert.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "rpc/query_convert.h"
 
 namespace posespace {

@@ -120,7 +120,7 @@ grpc::ServerUnaryReactor* SessionService::SetCorrespondences(
     v1::SetCorrespondencesResponse* response) {
   return ReplyFrom(pool_, context, "SetCorrespondences", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
-    auto tuples = TRY(CorrespondencesFromProto(*request));
+    auto tuples = CorrespondencesFromProto(*request);
     TRY(session->SetCorrespondences(std::move(tuples), request->etag()));
     ToProto(session->View(), response->mutable_session());
     return {};
@@ -150,7 +150,7 @@ grpc::ServerUnaryReactor* SessionService::StartBuild(grpc::CallbackServerContext
                                                      v1::StartBuildResponse* response) {
   return ReplyFrom(pool_, context, "StartBuild", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
-    const BuildRequest build = TRY(BuildRequestFromProto(request->options()));
+    const BuildRequest build = BuildRequestFromProto(request->options());
     const BuildStatus status = TRY(session->StartBuild(build, registry_.build_pool()));
     ToProto(status, response->mutable_build());
     response->set_attached(status.attached);

@@ -42,7 +42,8 @@ Result<void> CheckPlacements(std::span<const std::string> ids, const Points& pla
   std::vector<Violation> where;
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!places.row(i).allFinite()) {
-      where.push_back({FieldOf(ids[i]), "the place of shape " + Quoted(ids[i]) + " is not finite"});
+      where.push_back(
+          {FieldOf(ids[i]) + ".at", "the place of shape " + Quoted(ids[i]) + " is not finite"});
     }
   }
   if (!where.empty()) {
@@ -65,8 +66,8 @@ Result<void> CheckPlacements(std::span<const std::string> ids, const Points& pla
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (distance(i, j) >= kClosest * diameter && !vanishes) continue;
-      where.push_back({FieldOf(ids[i]), "shapes " + Quoted(ids[j]) + " and " + Quoted(ids[i]) +
-                                            " lie at the same place"});
+      where.push_back({FieldOf(ids[i]) + ".at", "shapes " + Quoted(ids[j]) + " and " +
+                                                    Quoted(ids[i]) + " lie at the same place"});
     }
   }
   if (!where.empty()) {

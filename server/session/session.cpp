@@ -103,26 +103,36 @@ Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shap
     return std::shared_ptr<const Drawing>();
   };
 
+  // Requires the lock.
+  const auto pixels_of_others = [&] {
+    std::int64_t pixels = 0;
+    for (const auto& other : state_->drawings) {
+      if (other->id != shape_id) pixels += PixelsOf(*other);
+    }
+    return pixels;
+  };
+
   const std::string digest = SourceDigest(source);
+  std::int64_t pixels_left = limits_.max_session_pixels;
   {
     const std::lock_guard lock(state_->mutex);
     if (auto known = TRY(precheck(digest, state_->Find(shape_id)))) return known;
+    pixels_left -= pixels_of_others();
   }
-  const auto drawing = std::make_shared<const Drawing>(TRY(ReadDrawing(shape_id, source, limits_)));
+  const auto drawing =
+      std::make_shared<const Drawing>(TRY(ReadDrawing(shape_id, source, limits_, pixels_left)));
 
   const std::lock_guard edit(state_->editing);
   const std::lock_guard lock(state_->mutex);
   const std::ptrdiff_t at = state_->Find(shape_id);
   if (auto known = TRY(precheck(digest, at))) return known;
-  std::int64_t pixels = PixelsOf(*drawing);
-  for (const auto& other : state_->drawings) {
-    if (other->id != shape_id) pixels += PixelsOf(*other);
-  }
+  // Others may have come while this one was read; polygons are painted whatever is left.
+  const std::int64_t pixels = PixelsOf(*drawing) + pixels_of_others();
   if (pixels > limits_.max_session_pixels) {
     const std::string message = "shape '" + shape_id + "': with it the session's pictures have " +
                                 std::to_string(pixels) + " pixels, more than the limit of " +
                                 std::to_string(limits_.max_session_pixels);
-    return Error{ErrorCode::kImageTooLarge, message, {{"shapes['" + shape_id + "']", message}}};
+    return Error{ErrorCode::kImageTooLarge, message, {{"shape_id", message}}};
   }
   if (at >= 0) {
     state_->drawings[at] = drawing;

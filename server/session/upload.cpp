@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/upload.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -11,89 +12,127 @@
 namespace posespace {
 namespace {
 
-constexpr std::string_view kImageVersion = "posespace-image/1";
-constexpr std::string_view kPolygonVersion = "posespace-polygon/1";
+constexpr std::string_view kImageVersion = "posespace-image/2";
+constexpr std::string_view kPolygonVersion = "posespace-polygon/2";
 
-// What a kernel function refused, as the fault of a named drawing.
-Error InShape(const std::string& shape_id, std::string_view part, Error error) {
-  error.message = "shape '" + shape_id + "': " + error.message;
-  if (error.where.empty()) {
-    error.where.push_back({"shapes['" + shape_id + "']." + std::string(part), error.message});
-  }
+// One upload being read.
+struct Upload {
+  const std::string& shape_id;
+  const Limits& limits;
+  std::int64_t pixels_left;
+};
+
+// What a kernel function refused, as the fault of a named drawing and of a field of the request:
+// the kernel's own field within `message`, or `field` where it names none.
+Error InRequest(const Upload& upload, const std::string& message, const std::string& field,
+                Error error) {
+  error.message = "shape '" + upload.shape_id + "': " + error.message;
+  for (Violation& violation : error.where) violation.field = message + "." + violation.field;
+  if (error.where.empty()) error.where.push_back({message + "." + field, error.message});
   return error;
 }
 
-Result<Image> Decode(const std::string& shape_id, std::string_view part,
-                     std::span<const std::uint8_t> bytes, const Limits& limits) {
-  auto image = DecodeImage(bytes, {.max_pixels = limits.max_image_pixels});
-  if (!image) return InShape(shape_id, part, std::move(image).error());
-  return image;
+Error Missing(const Upload& upload, const std::string& message, const std::string& field) {
+  return InRequest(upload, message, field,
+                   {ErrorCode::kShapeSourceMissing, "there is nothing in " + message, {}});
 }
 
-Error Missing(const std::string& shape_id, std::string_view part) {
-  return InShape(shape_id, part,
-                 {ErrorCode::kShapeSourceMissing, "there is neither a picture nor a polygon", {}});
+Result<DecodedImage> Decode(const Upload& upload, const std::string& message,
+                            const std::string& field, std::span<const std::uint8_t> bytes) {
+  const Limits& limits = upload.limits;
+  auto image =
+      DecodeImage(bytes, {.max_pixels = std::min(limits.max_image_pixels, upload.pixels_left)});
+  if (image) return image;
+  Error refused = std::move(image).error();
+  if (refused.code == ErrorCode::kImageTooLarge && upload.pixels_left < limits.max_image_pixels) {
+    refused.message += ", since the session's other pictures have taken the rest of " +
+                       std::to_string(limits.max_session_pixels);
+  }
+  return InRequest(upload, message, field, std::move(refused));
 }
 
-Result<Drawing> FromImage(const std::string& shape_id, const ImageSource& source,
-                          const Limits& limits) {
-  if (source.data.empty()) return Missing(shape_id, "image");
-  auto image = TRY(Decode(shape_id, "image", source.data, limits));
-  auto outline =
-      TraceOutline(image, {.threshold = source.threshold, .max_points = limits.max_outline_points});
-  if (!outline) return InShape(shape_id, "outline", std::move(outline).error());
+void Append(std::vector<std::string> more, std::vector<std::string>* warnings) {
+  warnings->insert(warnings->end(), std::make_move_iterator(more.begin()),
+                   std::make_move_iterator(more.end()));
+}
+
+// Cuts the drawing out of its picture and traces it.
+Result<Drawing> FromTexture(const Upload& upload, const std::string& message,
+                            const std::string& field, Texture texture,
+                            const ForegroundOptions& options) {
+  auto cutout = CutOut(std::move(texture), options);
+  if (!cutout) return InRequest(upload, message, field, std::move(cutout).error());
+  auto outline = TraceOutline(cutout->texture, {.threshold = cutout->threshold,
+                                                .max_points = upload.limits.max_outline_points});
+  if (!outline) return InRequest(upload, message, field, std::move(outline).error());
   Drawing drawing;
-  drawing.width = image.width;
-  drawing.height = image.height;
   drawing.outline = std::move(*outline);
-  drawing.texture.image = std::move(image);
+  std::swap(drawing.outline.warnings, cutout->warnings);
+  Append(std::move(cutout->warnings), &drawing.outline.warnings);
+  drawing.texture = std::move(cutout->texture);
   return drawing;
 }
 
-Result<Drawing> FromPolygon(const std::string& shape_id, const PolygonSource& source,
-                            const Limits& limits) {
-  if (source.outer.rows() == 0) return Missing(shape_id, "outline");
-  auto outline =
-      OutlineFromRings(source.outer, source.holes, {.max_points = limits.max_outline_points});
-  if (!outline) return InShape(shape_id, "outline", std::move(outline).error());
+Result<Drawing> Read(const Upload& upload, const ImageSource& source) {
+  if (source.data.empty()) return Missing(upload, "image", "data");
+  DecodedImage image = TRY(Decode(upload, "image", "data", source.data));
+  const int width = image.width, height = image.height;
+  std::vector<std::string> warnings = std::move(image.warnings);
+  Drawing drawing = TRY(FromTexture(upload, "image", "data",
+                                    Texture{std::move(image), {0.0, 0.0}, 1.0}, source.options));
+  drawing.width = width;
+  drawing.height = height;
+  Append(std::exchange(drawing.outline.warnings, std::move(warnings)), &drawing.outline.warnings);
+  return drawing;
+}
+
+Result<Drawing> Read(const Upload& upload, const PolygonSource& source) {
+  if (source.outer.rows() == 0) return Missing(upload, "polygon", "outer");
+  auto outline = OutlineFromRings(source.outer, source.holes,
+                                  {.max_points = upload.limits.max_outline_points});
+  if (!outline) return InRequest(upload, "polygon", "outer", std::move(outline).error());
   Drawing drawing;
   drawing.outline = std::move(*outline);
   if (source.texture.empty()) {
-    const Point size =
-        drawing.outline.outer.colwise().maxCoeff() - drawing.outline.outer.colwise().minCoeff();
+    const Point size = source.outer.colwise().maxCoeff() - source.outer.colwise().minCoeff();
     drawing.width = size.x();
     drawing.height = size.y();
-    drawing.texture = PaintRings(drawing.outline);
+    drawing.texture = PaintRings(source.outer, source.holes);
   } else {
-    drawing.texture.image = TRY(Decode(shape_id, "texture", source.texture, limits));
+    DecodedImage image = TRY(Decode(upload, "polygon", "texture", source.texture));
+    Append(std::move(image.warnings), &drawing.outline.warnings);
+    drawing.texture.image = std::move(image);
     drawing.width = drawing.texture.image.width;
     drawing.height = drawing.texture.image.height;
   }
   return drawing;
 }
 
+std::string DigestOf(const ImageSource& source) {
+  return Digest(kImageVersion)
+      .Add(std::span<const std::uint8_t>(source.data))
+      .Add(static_cast<std::int64_t>(source.options.foreground))
+      .Add(static_cast<std::int64_t>(source.options.threshold.value_or(-1)))
+      .Hex();
+}
+
+std::string DigestOf(const PolygonSource& source) {
+  Digest digest(kPolygonVersion);
+  digest.Add(source.outer).Add(static_cast<std::int64_t>(source.holes.size()));
+  for (const Points& hole : source.holes) digest.Add(hole);
+  return digest.Add(std::span<const std::uint8_t>(source.texture)).Hex();
+}
+
 }  // namespace
 
 std::string SourceDigest(const ShapeSource& source) {
-  if (const auto* image = std::get_if<ImageSource>(&source)) {
-    return Digest(kImageVersion)
-        .Add(std::span<const std::uint8_t>(image->data))
-        .Add(static_cast<std::int64_t>(image->threshold))
-        .Hex();
-  }
-  const auto& polygon = std::get<PolygonSource>(source);
-  Digest digest(kPolygonVersion);
-  digest.Add(polygon.outer).Add(static_cast<std::int64_t>(polygon.holes.size()));
-  for (const Points& hole : polygon.holes) digest.Add(hole);
-  return digest.Add(std::span<const std::uint8_t>(polygon.texture)).Hex();
+  return std::visit([](const auto& given) { return DigestOf(given); }, source);
 }
 
 Result<Drawing> ReadDrawing(const std::string& shape_id, const ShapeSource& source,
-                            const Limits& limits) {
-  const auto* image = std::get_if<ImageSource>(&source);
-  Drawing drawing =
-      TRY(image != nullptr ? FromImage(shape_id, *image, limits)
-                           : FromPolygon(shape_id, std::get<PolygonSource>(source), limits));
+                            const Limits& limits, std::int64_t pixels_left) {
+  const Upload upload{shape_id, limits, pixels_left};
+  Drawing drawing = TRY(std::visit([&](const auto& given) { return Read(upload, given); }, source));
   drawing.id = shape_id;
   drawing.digest = SourceDigest(source);
   return drawing;

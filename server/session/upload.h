@@ -3,10 +3,12 @@
 #define POSESPACE_SESSION_UPLOAD_H_
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "drawing/foreground.h"
 #include "geometry/mesh.h"
 #include "geometry/result.h"
 #include "session/limits.h"
@@ -14,10 +16,11 @@
 
 namespace posespace {
 
-// Source of a drawing.
+// Sources of a drawing, as the caller sent them; plain values, so that they can be kept and read
+// again.
 struct ImageSource {
   std::vector<std::uint8_t> data;  // a picture file
-  int threshold = 128;             // alpha from which a pixel is painted, 1 .. 255
+  ForegroundOptions options = {};
 };
 struct PolygonSource {
   Points outer;
@@ -29,12 +32,14 @@ using ShapeSource = std::variant<ImageSource, PolygonSource>;
 // Digest of a source and its options; equal sources have equal digests.
 std::string SourceDigest(const ShapeSource& source);
 
-// Decodes and traces an upload.  Pure; call from any thread.
-// Fails  as DecodeImage and TraceOutline or OutlineFromRings do, with the shape's name in the
-//        message and a field such as "shapes['walk'].outline"; kShapeSourceMissing (no bytes, no
-//        points).
+// Decodes and traces an upload.  `pixels_left` is what the session's pictures may still have: a
+// picture with more is refused by its header.  Pure; call from any thread.
+// Fails  as DecodeImage, CutOut, TraceOutline or OutlineFromRings do, with the shape's name in the
+//        message and fields of PutShapeRequest: image.data, image.threshold, polygon.outer[17],
+//        polygon.holes[2][5], polygon.texture; kShapeSourceMissing (no bytes, no points).
 Result<Drawing> ReadDrawing(const std::string& shape_id, const ShapeSource& source,
-                            const Limits& limits);
+                            const Limits& limits,
+                            std::int64_t pixels_left = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace posespace
 

@@ -15,6 +15,7 @@ from PIL import Image
 from synthetic_drawings import WALK, figure, png_of, star
 
 NAN = float("nan")
+CARD = figure(**WALK["stand"])
 
 
 @pytest.fixture(autouse=True)
@@ -114,10 +115,12 @@ def test_a_file_that_is_not_there(session):
         session.put_shape("stand", image="nowhere.png")
 
 
-def test_a_polygon_that_crosses_itself_names_its_edges(session):
-    bow = [(0, 0), (100, 100), (100, 0), (0, 100)]
-    with refused(posespace.InvalidDrawing, "OUTLINE_SELF_INTERSECTS", "bow", "edge"):
-        session.put_shape("bow", polygon=bow)
+def test_a_hole_that_crosses_the_outline_names_both_edges(session):
+    hole = [(150, 100), (250, 100), (150, 120)]
+    with refused(posespace.InvalidDrawing, "OUTLINE_SELF_INTERSECTS", "star", "edge") as refusal:
+        session.put_shape("star", polygon=star(), holes=[hole])
+    assert any(field.startswith("polygon.holes[0][") for field in refusal.value.fields)
+    assert any(field.startswith("polygon.outer[") for field in refusal.value.fields)
 
 
 @pytest.mark.parametrize("bad", [NAN, float("inf"), -float("inf")])
@@ -156,7 +159,7 @@ def test_a_threshold_out_of_range(session, threshold):
 
 def test_a_foreground_that_is_not_there(session):
     with refused(posespace.InvalidArgument, "INVALID_OPTION", "foreground", "alpha"):
-        session.put_shape("stand", image=figure(**WALK["stand"]), foreground="dark")
+        session.put_shape("stand", image=figure(**WALK["stand"]), foreground="bright")
 
 
 def test_both_a_picture_and_a_polygon(session):
@@ -483,7 +486,64 @@ def test_values_that_no_message_can_carry_are_refused_by_name(client, walk, word
 def test_a_refused_picture_is_named_by_its_path(session):
     with refused(posespace.InvalidDrawing, "IMAGE_UNDECODABLE") as refusal:
         session.put_shape("jump", image=b"no picture")
-    assert list(refusal.value.fields) == ["shapes['jump'].image"]
+    assert list(refusal.value.fields) == ["image.data"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "call"),
+    [
+        (["image.data"], lambda s: s.put_shape("c", image=b"GIF89a")),
+        (["image.data"], lambda s: s.put_shape("c", image=b"")),
+        (["image.data"], lambda s: s.put_shape("c", image=np.zeros((9, 9, 4), np.uint8))),
+        (["image.threshold"], lambda s: s.put_shape("c", image=png_of(CARD), threshold=0)),
+        (
+            ["image.threshold"],
+            lambda s: s.put_shape("c", image=png_of(CARD), foreground="dark", threshold=256),
+        ),
+        (["polygon.outer"], lambda s: s.put_shape("c", polygon=[(0, 0), (1, 1)])),
+        (["polygon.outer[1]"], lambda s: s.put_shape("c", polygon=[(0, 0), (NAN, 1), (2, 0)])),
+        (
+            ["polygon.holes[0][2]"],
+            lambda s: s.put_shape("c", polygon=star(), holes=[[(0, 0), (1, 1), (1e9, 0)]]),
+        ),
+        (["polygon.texture"], lambda s: s.put_shape("c", polygon=star(), texture=b"GIF89a")),
+        (["shape_id"], lambda s: s.put_shape("a", polygon=star(7))),
+        (
+            ["tuples[0].points['b']", "tuples[1].points['a']"],
+            lambda s: s.set_correspondences([{"b": (9e3, 0)}, {"a": (9e3, 0)}]),
+        ),
+        (["tuples[0].points['a']"], lambda s: s.set_correspondences([{"a": (NAN, 0)}])),
+        (["tuples[0].points['no']"], lambda s: s.set_correspondences([{"no": (1, 0)}])),
+        (["tuples[0]"], lambda s: s.set_correspondences([{}])),
+        (["placements['b'].at"], lambda s: s.set_placements({"a": (0, 0), "b": (0, NAN)})),
+        (["placements['b'].at"], lambda s: s.set_placements({"a": (0, 0), "b": (0, 0)})),
+        (["placements['b']"], lambda s: s.set_placements({"a": (0, 0)})),
+        (["placements['no']"], lambda s: s.set_placements({"no": (0, 0)})),
+        (["options.tolerance"], lambda s: s.build(tolerance=0.3)),
+        (["options.target_edge_length"], lambda s: s.build(target_edge_length=0.0)),
+    ],
+)
+def test_a_field_at_fault_is_named_by_its_path_in_the_request(two_stars, fields, call):
+    with pytest.raises(posespace.Error) as refusal:
+        call(two_stars)
+    assert list(refusal.value.fields) == fields, str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("field", "call"),
+    [
+        ("queries[0].at", lambda s: s.blend(at=(NAN, 0))),
+        ("queries[2].at", lambda s: s.blend_many([(0, 0), (0, 1), (NAN, 0)])),
+        ("queries[0].weights", lambda s: s.blend(weights={"stand": 0.5})),
+        ("queries[0].options.refits", lambda s: s.blend(at=(0, 0), refits=9)),
+        ("width", lambda s: s.render(at=(0, 0), size=(0, 10))),
+        ("view", lambda s: s.render(at=(0, 0), view=(0, 0, 0, 10))),
+    ],
+)
+def test_a_query_at_fault_is_named_by_its_path_in_the_request(walk, field, call):
+    with pytest.raises(posespace.Error) as refusal:
+        call(walk)
+    assert list(refusal.value.fields) == [field], str(refusal.value)
 
 
 def test_the_tree_has_one_root():

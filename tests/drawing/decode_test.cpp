@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "drawing/png_file.h"
 #include "tests/support/fails_saying.h"
 #include "tests/support/fails_with.h"
 #include "tests/support/pictures.h"
@@ -201,8 +202,6 @@ TEST(DecodeImage, RefusesEveryTruncation) {
 }
 
 TEST(DecodeImage, SaysWhetherTheFileIsForeignCutShortOrDamaged) {
-  const Bytes jpeg = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F'};
-  EXPECT_THAT(DecodeImage(jpeg), FailsSaying(ErrorCode::kImageUndecodable, "not a PNG"));
   EXPECT_THAT(DecodeImage({}), FailsSaying(ErrorCode::kImageUndecodable, "empty"));
 
   Bytes bytes = WritePng({PNG_COLOR_TYPE_RGB, 8, false}, 13, 11);
@@ -210,6 +209,27 @@ TEST(DecodeImage, SaysWhetherTheFileIsForeignCutShortOrDamaged) {
   EXPECT_THAT(DecodeImage(half), FailsSaying(ErrorCode::kImageUndecodable, "cut short"));
   bytes[kHeaderEnd + 12] ^= 1;  // in the first bytes of IDAT
   EXPECT_THAT(DecodeImage(bytes), FailsSaying(ErrorCode::kImageUndecodable, "damaged"));
+}
+
+TEST(DecodeImage, SaysWhatBytesThatAreNoPictureLookLikeAndWhatIsAccepted) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"GIF89a", "GIF"},
+      {"BM\x36", "BMP"},
+      {std::string("II*\0", 4), "TIFF"},
+      {"8BPS", "Photoshop"},
+      {std::string("\0\0\0\x1c", 4) + "ftypavif", "AVIF"},
+      {std::string("\0\0\0\x1c", 4) + "ftypheic", "HEIF"},
+      {"%PDF-1.7", "PDF"},
+      {"<svg xmlns=", "goes in svg"},
+      {"\x1f\x8b\x08", "goes in svg"},
+      {"hello", "not a picture file"},
+      {std::string("RIFF\0\0\0\0WAVE", 12), "not a picture file"},
+  };
+  for (const auto& [text, said] : cases) {
+    const auto image = DecodeImage(Bytes(text.begin(), text.end()));
+    EXPECT_THAT(image, FailsSaying(ErrorCode::kImageUndecodable, said));
+    EXPECT_THAT(image, FailsSaying(ErrorCode::kImageUndecodable, "PNG, JPEG and WebP"));
+  }
 }
 
 TEST(DecodeImage, ChecksTheSizeInTheHeaderBeforeDecoding) {

@@ -167,7 +167,7 @@ TEST(TraceOutline, GivesEqualOutputForEqualInput) {
 }
 
 TEST(TraceOutline, FailsWhenNothingIsPainted) {
-  EXPECT_THAT(TraceOutline({}), FailsWith(ErrorCode::kOutlineEmpty));
+  EXPECT_THAT(TraceOutline(Image()), FailsWith(ErrorCode::kOutlineEmpty));
   EXPECT_THAT(TraceOutline(PictureOf(30, 20)), FailsSaying(ErrorCode::kOutlineEmpty, "30 x 20"));
   EXPECT_THAT(TraceOutline(PictureOf(30, 20, {255, 255, 255, 127})),
               FailsSaying(ErrorCode::kOutlineEmpty, "128"));

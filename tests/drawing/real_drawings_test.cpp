@@ -29,7 +29,7 @@ std::vector<std::filesystem::path> Sprites() {
   return sprites;
 }
 
-Result<Image> ReadImage(const std::filesystem::path& path) {
+Result<DecodedImage> ReadImage(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
   return DecodeImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});

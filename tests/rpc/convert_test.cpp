@@ -33,20 +33,21 @@ TEST(ShapeSource, KeepsTheBytesAndTheDefaultThreshold) {
   ASSERT_TRUE(source);
   const ImageSource& image = std::get<ImageSource>(*source);
   EXPECT_THAT(image.data, ElementsAre(0x89, 'P', 'N', 0, 'G'));
-  EXPECT_EQ(image.threshold, 128);
+  EXPECT_EQ(image.options.foreground, Foreground::kAlpha);
+  EXPECT_EQ(image.options.threshold, std::nullopt);
 }
 
-TEST(ShapeSource, TakesThresholdsOfOneTo255) {
+TEST(ShapeSource, TellsWhichPixelsAreTheDrawing) {
   v1::PutShapeRequest request;
-  for (const int accepted : {1, 255}) {
-    request.mutable_image()->set_threshold(accepted);
-    ASSERT_TRUE(ShapeSourceFromProto(request));
-    EXPECT_EQ(std::get<ImageSource>(*ShapeSourceFromProto(request)).threshold, accepted);
-  }
-  for (const int refused : {0, 256, -1, std::numeric_limits<int>::max()}) {
-    request.mutable_image()->set_threshold(refused);
-    EXPECT_THAT(ShapeSourceFromProto(request),
-                FailsSaying(ErrorCode::kInvalidOption, "image.threshold"));
+  request.mutable_image()->set_threshold(40);
+  for (const auto& [sent, read] : {std::pair(v1::FOREGROUND_ALPHA, Foreground::kAlpha),
+                                   std::pair(v1::FOREGROUND_LIGHT, Foreground::kLight),
+                                   std::pair(v1::FOREGROUND_DARK, Foreground::kDark)}) {
+    request.mutable_image()->set_foreground(sent);
+    const auto source = ShapeSourceFromProto(request);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(std::get<ImageSource>(*source).options.foreground, read);
+    EXPECT_EQ(std::get<ImageSource>(*source).options.threshold, 40);
   }
 }
 
@@ -74,18 +75,7 @@ TEST(ShapeSource, RefusesAnOddNumberOfCoordinates) {
   SetRing({0, 1, 2, 3, 4, 5}, request.mutable_polygon()->mutable_outer());
   SetRing({6, 7, 8}, request.mutable_polygon()->add_holes());
   EXPECT_THAT(ShapeSourceFromProto(request),
-              FailsSaying(ErrorCode::kInvalidOption, "polygon.holes[0].coordinates"));
-}
-
-TEST(ShapeSource, NamesTheCoordinateThatIsNotFinite) {
-  for (const double bad : {kNan, kInfinity, -kInfinity}) {
-    v1::PutShapeRequest request;
-    SetRing({0, 1, 2, bad, 4, 5}, request.mutable_polygon()->mutable_outer());
-    const auto source = ShapeSourceFromProto(request);
-    ASSERT_THAT(source, FailsWith(ErrorCode::kInvalidOption));
-    EXPECT_THAT(source.error().where,
-                ElementsAre(Field(&Violation::field, "polygon.outer.coordinates[3]")));
-  }
+              FailsSaying(ErrorCode::kInvalidOption, "polygon.holes[0]"));
 }
 
 TEST(Correspondences, AreReadWhole) {
@@ -94,29 +84,9 @@ TEST(Correspondences, AreReadWhole) {
   points["walk"].set_x(1.5);
   points["run"].set_y(-2.0);
   const auto tuples = CorrespondencesFromProto(request);
-  ASSERT_TRUE(tuples);
-  ASSERT_EQ(tuples->size(), 1u);
-  EXPECT_EQ((*tuples)[0].at("walk"), Point(1.5, 0.0));
-  EXPECT_EQ((*tuples)[0].at("run"), Point(0.0, -2.0));
-}
-
-TEST(Correspondences, ReportEveryPointThatIsNotFinite) {
-  v1::SetCorrespondencesRequest request;
-  (*request.add_tuples()->mutable_points())["walk"].set_x(kNan);
-  (*request.add_tuples()->mutable_points())["walk"].set_x(1.0);
-  (*request.add_tuples()->mutable_points())["run"].set_y(kInfinity);
-  const auto tuples = CorrespondencesFromProto(request);
-  ASSERT_THAT(tuples, FailsWith(ErrorCode::kLandmarkNotFinite));
-  EXPECT_THAT(tuples.error().where,
-              ElementsAre(Field(&Violation::field, "tuples[0].points['walk']"),
-                          Field(&Violation::field, "tuples[2].points['run']")));
-}
-
-TEST(Correspondences, RefuseATupleThatMarksNothing) {
-  v1::SetCorrespondencesRequest request;
-  request.add_tuples();
-  EXPECT_THAT(CorrespondencesFromProto(request),
-              FailsSaying(ErrorCode::kInvalidOption, "tuples[0]"));
+  ASSERT_EQ(tuples.size(), 1u);
+  EXPECT_EQ(tuples[0].at("walk"), Point(1.5, 0.0));
+  EXPECT_EQ(tuples[0].at("run"), Point(0.0, -2.0));
 }
 
 TEST(Placements, AreReadByShape) {
@@ -129,46 +99,25 @@ TEST(Placements, AreReadByShape) {
   EXPECT_EQ(placements->at("walk"), Point(3.0, 0.0));
 }
 
-TEST(Placements, RefuseAMissingPlaceAShapePlacedTwiceAndWhatIsNotFinite) {
+TEST(Placements, RefuseAMissingPlaceAndAShapePlacedTwice) {
   v1::SetPlacementsRequest request;
   request.add_placements()->set_shape_id("walk");
   EXPECT_THAT(PlacementsFromProto(request),
-              FailsSaying(ErrorCode::kInvalidOption, "placements[0].at"));
+              FailsWith(ErrorCode::kInvalidOption, "placements['walk'].at"));
   request.mutable_placements(0)->mutable_at();
   *request.add_placements() = request.placements(0);
   EXPECT_THAT(PlacementsFromProto(request),
-              FailsSaying(ErrorCode::kInvalidOption, "placements[1].shape_id"));
-  request.mutable_placements(1)->set_shape_id("run");
-  request.mutable_placements(1)->mutable_at()->set_y(kNan);
-  EXPECT_THAT(PlacementsFromProto(request),
-              FailsSaying(ErrorCode::kPlacementNotFinite, "placements[1].at"));
+              FailsWith(ErrorCode::kInvalidOption, "placements['walk']"));
 }
 
-TEST(BuildOptions, AreTheDefaultsWhenAbsent) {
-  const auto request = BuildRequestFromProto({});
-  ASSERT_TRUE(request);
-  EXPECT_EQ(request->tolerance, 0.03);
-  EXPECT_EQ(request->target_edge_length, 0.08);
-}
-
-TEST(BuildOptions, AreTakenToTheEndsOfTheirRangesAndNoFarther) {
+TEST(BuildOptions, AreTheDefaultsWhereAbsent) {
+  EXPECT_EQ(BuildRequestFromProto({}).tolerance, 0.03);
+  EXPECT_EQ(BuildRequestFromProto({}).target_edge_length, 0.08);
   v1::BuildOptions options;
-  for (const double accepted : {0.001, 0.2}) {
-    options.set_tolerance(accepted);
-    ASSERT_TRUE(BuildRequestFromProto(options));
-    EXPECT_EQ(BuildRequestFromProto(options)->tolerance, accepted);
-  }
-  for (const double refused : {0.0, 0.000999, 0.2001, -1.0, kNan, kInfinity}) {
-    options.set_tolerance(refused);
-    EXPECT_THAT(BuildRequestFromProto(options),
-                FailsSaying(ErrorCode::kInvalidOption, "options.tolerance"));
-  }
-  options.clear_tolerance();
-  for (const double refused : {0.0, 0.0199, 1.01, kNan}) {
-    options.set_target_edge_length(refused);
-    EXPECT_THAT(BuildRequestFromProto(options),
-                FailsSaying(ErrorCode::kInvalidOption, "options.target_edge_length"));
-  }
+  options.set_tolerance(0.05);
+  options.set_target_edge_length(0.5);
+  EXPECT_EQ(BuildRequestFromProto(options).tolerance, 0.05);
+  EXPECT_EQ(BuildRequestFromProto(options).target_edge_length, 0.5);
 }
 
 TEST(SessionView, TravelsWhole) {

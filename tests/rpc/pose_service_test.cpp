@@ -3,6 +3,7 @@
 #include <limits>
 #include <thread>
 
+#include "drawing/decode.h"
 #include "tests/rpc/service_fixture.h"
 
 namespace posespace {

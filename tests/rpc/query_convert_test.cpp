@@ -35,7 +35,7 @@ std::shared_ptr<const PoseSpace> TwoEllipses() {
     drawing->id = id;
     drawing->digest = id;
     drawing->outline = *OutlineFromRings(ring, {});
-    drawing->texture = PaintRings(drawing->outline);
+    drawing->texture = PaintRings(ring, {});
     inputs.drawings.push_back(std::move(drawing));
   }
   inputs.placements = (Points(2, 2) << 0, 0, 0, 1).finished();

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "posespace/v1/pose_service.grpc.pb.h"
 #include "posespace/v1/session_service.grpc.pb.h"
 #include "rpc/server.h"

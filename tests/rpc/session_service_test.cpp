@@ -150,13 +150,17 @@ TEST_F(SessionServiceTest, RefusesDrawingsThatCannotBeUsed) {
                                   PutImage("tux", "walk", PngOf(80, 40, kClear)), &response);
   EXPECT_THAT(clear, Refuses(StatusCode::INVALID_ARGUMENT, "OUTLINE_EMPTY"));
   EXPECT_THAT(clear.error_message(), HasSubstr("walk"));
-  v1::PutShapeRequest bow_tie;
-  bow_tie.set_session_id("tux");
-  bow_tie.set_shape_id("walk");
-  for (const double c : {0., 0., 10., 10., 10., 0., 0., 10.}) {
-    bow_tie.mutable_polygon()->mutable_outer()->add_coordinates(c);
+  v1::PutShapeRequest pierced;  // its hole reaches beyond it
+  pierced.set_session_id("tux");
+  pierced.set_shape_id("walk");
+  for (const double c : {0., 0., 10., 0., 10., 10., 0., 10.}) {
+    pierced.mutable_polygon()->mutable_outer()->add_coordinates(c);
   }
-  EXPECT_THAT(client_.Call(&SessionStub::PutShape, bow_tie, &response),
+  for (const double c : {5., 5., 15., 5., 5., 8.}) {
+    if (pierced.polygon().holes().empty()) pierced.mutable_polygon()->add_holes();
+    pierced.mutable_polygon()->mutable_holes(0)->add_coordinates(c);
+  }
+  EXPECT_THAT(client_.Call(&SessionStub::PutShape, pierced, &response),
               Refuses(StatusCode::INVALID_ARGUMENT, "OUTLINE_SELF_INTERSECTS"));
 }
 

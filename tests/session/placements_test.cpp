@@ -31,8 +31,8 @@ TEST(CheckPlacements, NamesEveryPlaceThatIsNotFinite) {
   places(0, 1) = std::numeric_limits<double>::quiet_NaN();
   places(2, 0) = std::numeric_limits<double>::infinity();
   const auto result = CheckPlacements(kIds, places);
-  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementNotFinite, "placements['stand']"));
-  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementNotFinite, "placements['jump']"));
+  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementNotFinite, "placements['stand'].at"));
+  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementNotFinite, "placements['jump'].at"));
   EXPECT_EQ(result.error().where.size(), 2u);
 }
 
@@ -43,7 +43,7 @@ TEST(CheckPlacements, RefusesPlacesTooFarApartForNumbers) {
 
 TEST(CheckPlacements, NamesPlacesThatCoincide) {
   const auto result = CheckPlacements(kIds, PointsOf("0 0, 5 5, 0 0"));
-  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementsCoincide, "placements['jump']"));
+  EXPECT_THAT(result, FailsWith(ErrorCode::kPlacementsCoincide, "placements['jump'].at"));
   EXPECT_NE(result.error().message.find("'stand' and 'jump'"), std::string::npos);
   EXPECT_THAT(CheckPlacements(kIds, PointsOf("7 7, 7 7, 7 7")),
               FailsWith(ErrorCode::kPlacementsCoincide));

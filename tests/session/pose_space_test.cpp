@@ -362,12 +362,12 @@ TEST(PoseSpace, ChecksItsInputsBeforeAnyWork) {
   EXPECT_THAT(PoseSpace::Build(inputs), FailsWith(ErrorCode::kSizeMismatch));
   inputs.placements = PointsOf("0 0, 1 0, 0 0");
   EXPECT_THAT(PoseSpace::Build(inputs),
-              FailsWith(ErrorCode::kPlacementsCoincide, "placements['pose2']"));
+              FailsWith(ErrorCode::kPlacementsCoincide, "placements['pose2'].at"));
   inputs.placements(1, 1) = kNan;
   EXPECT_THAT(PoseSpace::Build(inputs),
-              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1']"));
+              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1'].at"));
   EXPECT_THAT(Creatures().WithPlacements(inputs.placements),
-              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1']"));
+              FailsWith(ErrorCode::kPlacementNotFinite, "placements['pose1'].at"));
   EXPECT_THAT(Creatures().WithPlacements(PointsOf("0 0")), FailsWith(ErrorCode::kSizeMismatch));
 }
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "geometry/polygon.h"
 #include "session/placements.h"
 

@@ -89,7 +89,7 @@ TEST(Session, HoldsAsManyDrawingsAndPixelsAsItsLimits) {
   Session session("tux", "", {}, limits);
   EXPECT_THAT(session.PutShape("a", CreaturePicture(0.0, 128), false), Succeeds());
   EXPECT_THAT(session.PutShape("b", CreaturePicture(0.0, 65), false),
-              FailsWith(ErrorCode::kImageTooLarge, "shapes['b']"));
+              FailsWith(ErrorCode::kImageTooLarge, "image.data"));
   EXPECT_THAT(session.PutShape("b", CreaturePicture(0.0, 64), false), Succeeds());
   EXPECT_THAT(session.PutShape("c", CreaturePicture(0.0, 32), false),
               FailsWith(ErrorCode::kTooManyShapes));
@@ -187,9 +187,9 @@ TEST_F(SessionTest, TakesPlacementsOfAllDrawingsOrNone) {
   EXPECT_THAT(session_.SetPlacements({{"a", Point(0, 0)}, {"c", Point(1, 0)}}, ""),
               FailsWith(ErrorCode::kShapeNotFound, "placements['c']"));
   EXPECT_THAT(session_.SetPlacements({{"a", Point(0, 0)}, {"b", Point(0, kNan)}}, ""),
-              FailsWith(ErrorCode::kPlacementNotFinite, "placements['b']"));
+              FailsWith(ErrorCode::kPlacementNotFinite, "placements['b'].at"));
   EXPECT_THAT(session_.SetPlacements({{"a", Point(4, 4)}, {"b", Point(4, 4)}}, ""),
-              FailsWith(ErrorCode::kPlacementsCoincide, "placements['b']"));
+              FailsWith(ErrorCode::kPlacementsCoincide, "placements['b'].at"));
   EXPECT_TRUE(session_.View().placements_are_default);
 
   ASSERT_THAT(session_.SetPlacements({{"a", Point(3, 4)}, {"b", Point(5, 6)}}, ""), Succeeds());

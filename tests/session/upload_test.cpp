@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "geometry/polygon.h"
 #include "tests/session/sample_drawings.h"
+#include "tests/support/fails_saying.h"
 #include "tests/support/fails_with.h"
 #include "tests/support/points.h"
 
@@ -49,19 +50,24 @@ TEST(ReadDrawing, TakesAPolygonsPicturePixelByPixel) {
 TEST(ReadDrawing, NamesTheShapeThatIsAtFault) {
   const ImageSource damaged{{1, 2, 3}};
   const auto undecodable = ReadDrawing("walk", damaged, Limits());
-  EXPECT_THAT(undecodable, FailsWith(ErrorCode::kImageUndecodable, "shapes['walk'].image"));
+  EXPECT_THAT(undecodable, FailsWith(ErrorCode::kImageUndecodable, "image.data"));
   EXPECT_EQ(undecodable.error().message.find("shape 'walk': "), 0u);
 
   const ImageSource blank{EncodePng(Image{8, 8, std::vector<std::uint8_t>(8 * 8 * 4)})};
   EXPECT_THAT(ReadDrawing("walk", blank, Limits()),
-              FailsWith(ErrorCode::kOutlineEmpty, "shapes['walk'].outline"));
+              FailsWith(ErrorCode::kOutlineEmpty, "image.data"));
 
-  const PolygonSource bow_tie{PointsOf("0 0, 10 10, 10 0, 0 10"), {}, {}};
-  EXPECT_THAT(ReadDrawing("walk", bow_tie, Limits()), FailsWith(ErrorCode::kOutlineNotSimple));
+  const PolygonSource far_point{PointsOf("0 0, 1e9 10, 10 0, 0 10"), {}, {}};
+  EXPECT_THAT(ReadDrawing("walk", far_point, Limits()),
+              FailsWith(ErrorCode::kInvalidOption, "polygon.outer[1]"));
+  const PolygonSource far_hole{
+      PointsOf("0 0, 10 0, 10 10"), {PointsOf("1 0, 2 0, 2 1"), PointsOf("0 0, 1 1, 0 1e9")}, {}};
+  EXPECT_THAT(ReadDrawing("walk", far_hole, Limits()),
+              FailsWith(ErrorCode::kInvalidOption, "polygon.holes[1][2]"));
 
   const PolygonSource badly_painted{PointsOf("0 0, 10 0, 10 10"), {}, {1, 2, 3}};
   EXPECT_THAT(ReadDrawing("walk", badly_painted, Limits()),
-              FailsWith(ErrorCode::kImageUndecodable, "shapes['walk'].texture"));
+              FailsWith(ErrorCode::kImageUndecodable, "polygon.texture"));
 }
 
 TEST(ReadDrawing, AsksForASource) {
@@ -77,6 +83,9 @@ TEST(ReadDrawing, KeepsToTheLimitsOnBothSides) {
   EXPECT_THAT(ReadDrawing("walk", CreaturePicture(0.0, 128), limits), Succeeds());
   EXPECT_THAT(ReadDrawing("walk", CreaturePicture(0.0, 129), limits),
               FailsWith(ErrorCode::kImageTooLarge));
+  EXPECT_THAT(ReadDrawing("walk", CreaturePicture(0.0, 128), limits, 128 * 128), Succeeds());
+  EXPECT_THAT(ReadDrawing("walk", CreaturePicture(0.0, 128), limits, 128 * 128 - 1),
+              FailsSaying(ErrorCode::kImageTooLarge, "have taken the rest of 64000000"));
   limits.max_outline_points = 60;
   EXPECT_THAT(ReadDrawing("walk", CreaturePolygon(0.0, 60), limits), Succeeds());
   EXPECT_THAT(ReadDrawing("walk", CreaturePolygon(0.0, 61), limits),
@@ -94,8 +103,12 @@ TEST(SourceDigest, DependsOnEveryPartOfASource) {
   for (const PolygonSource& other : {other_ring, other_hole, no_hole, other_texture}) {
     EXPECT_NE(SourceDigest(base), SourceDigest(other));
   }
-  EXPECT_NE(SourceDigest(ImageSource{{1, 2}, 128}), SourceDigest(ImageSource{{1, 2}, 127}));
-  EXPECT_NE(SourceDigest(ImageSource{{1, 2}, 128}), SourceDigest(ImageSource{{1}, 128}));
+  EXPECT_NE(SourceDigest(ImageSource{{1, 2}, {Foreground::kAlpha, 128}}),
+            SourceDigest(ImageSource{{1, 2}, {Foreground::kAlpha, 127}}));
+  EXPECT_NE(SourceDigest(ImageSource{{1, 2}, {Foreground::kAlpha, 128}}),
+            SourceDigest(ImageSource{{1}, {Foreground::kAlpha, 128}}));
+  EXPECT_NE(SourceDigest(ImageSource{{1, 2}, {Foreground::kAlpha, 128}}),
+            SourceDigest(ImageSource{{1, 2}, {Foreground::kDark, 128}}));
 }
 
 }  // namespace

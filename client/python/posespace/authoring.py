@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal
 
 from numpy.typing import ArrayLike
 
@@ -12,7 +11,7 @@ from posespace import messages
 from posespace.building import OnProgress, build_and_wait
 from posespace.channel import Channel
 from posespace.errors import InvalidArgument
-from posespace.messages import Place
+from posespace.messages import Foreground, Place
 from posespace.pictures import Picture, picture_bytes
 from posespace.results import Build, BuildReport, SessionState, Shape, Suggestion
 from posespace.v1 import session_service_pb2
@@ -62,7 +61,7 @@ class Authoring:
         shape_id: str,
         *,
         image: Picture | None = None,
-        foreground: Literal["alpha"] = "alpha",
+        foreground: Foreground = "alpha",
         threshold: int | None = None,
         polygon: ArrayLike | None = None,
         holes: Sequence[ArrayLike] = (),
@@ -72,15 +71,22 @@ class Authoring:
         """Adds a drawing and answers how it was understood.
 
             session.put_shape("stand", image="stand.png")
-            session.put_shape("jump", image=pixels)             # (H, W, 3 or 4) uint8, or PNG bytes
+            session.put_shape("jump", image=pixels)             # (H, W, 3 or 4) uint8, or bytes
+            session.put_shape("run", image="scan.jpg", foreground="dark")
             session.put_shape("star", polygon=ring, holes=[ring])
 
-        image       Path, bytes of a PNG, or array with straight alpha.
-        foreground  Which pixels are the drawing: "alpha", those whose alpha reaches the threshold.
-        threshold   1 to 255; 128 by default.
-        polygon     Ring (K, 2) in drawing pixels, simple, either orientation; `holes` likewise.
+        image       Path or bytes of a PNG, JPEG or WebP file, or array with straight alpha.
+        foreground  Which pixels are the drawing.  "alpha": those whose alpha reaches the threshold;
+                    a picture that is opaque all over loses its paper, the one colour around the
+                    drawing.  "light", "dark": those lighter, or darker, than the plain background.
+        threshold   1 to 255.  Of alpha: 128 by default.  Of brightness, as the distance from the
+                    background: by default half of the picture's range.
+        polygon     Ring (K, 2) in drawing pixels, either orientation; `holes` likewise.  A ring
+                    that crosses itself is filled by the non-zero rule and traced anew.
         texture     Picture whose pixels are the polygon's drawing pixels; one colour without it.
         replace     Overwrite a drawing of the same id.
+
+        Whatever was done to the drawing is said in the answer's `warnings`.
 
         Raises InvalidDrawing (the message says why no outline can be made of it), AlreadyExists
         when the id has another drawing, ResourceExhausted when the picture is too large to send.

@@ -6,7 +6,7 @@ try:
 except posespace.InvalidDrawing as error:
     print(error)            # names the drawing, the point and the limit
     print(error.reason)     # "OUTLINE_EMPTY"; stable, for programs
-    print(error.fields)     # {"shapes['jump'].image": "..."}: the fields at fault, if any
+    print(error.fields)     # {"image.data": "..."}: the fields at fault, if any
 
 What a moment's wait may mend (a full queue, say) has been tried again until the timeout before it
 is raised.

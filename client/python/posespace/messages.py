@@ -22,6 +22,7 @@ M = TypeVar("M", bound=Message)
 
 BlendMethod = Literal["rigid", "linear", "paper"]
 ShearLimit = Literal["band", "hermite", "off"]
+Foreground = Literal["alpha", "light", "dark"]
 Place = Sequence[float] | NDArray[np.floating[Any]]  # x and y
 
 _METHODS = {
@@ -35,7 +36,11 @@ _SHEAR_LIMITS = {
     "hermite": pose_service_pb2.SHEAR_LIMIT_HERMITE,
     "off": pose_service_pb2.SHEAR_LIMIT_OFF,
 }
-_FOREGROUNDS = {"alpha": session_service_pb2.FOREGROUND_ALPHA}
+_FOREGROUNDS = {
+    "alpha": session_service_pb2.FOREGROUND_ALPHA,
+    "light": session_service_pb2.FOREGROUND_LIGHT,
+    "dark": session_service_pb2.FOREGROUND_DARK,
+}
 
 
 @contextlib.contextmanager
