@@ -66,6 +66,11 @@ Result<ShapeSource> ImageFromProto(const v1::ImageSource& image) {
   return ShapeSource(ImageSource{BytesOf(image.data()), options});
 }
 
+Result<ShapeSource> SvgFromProto(const v1::SvgSource& svg) {
+  const ForegroundOptions options = TRY(OptionsFromProto(svg, "svg"));
+  return ShapeSource(SvgSource{BytesOf(svg.document()), options});
+}
+
 Result<ShapeSource> PolygonFromProto(const v1::PolygonSource& polygon) {
   PolygonSource source;
   source.outer = TRY(RingFromProto(polygon.outer(), "polygon.outer"));
@@ -122,11 +127,12 @@ Result<ShapeSource> SourceFromProto(const v1::PutShapeRequest& request) {
     case v1::PutShapeRequest::kPolygon:
       return PolygonFromProto(request.polygon());
     case v1::PutShapeRequest::kSvg:
+      return SvgFromProto(request.svg());
     case v1::PutShapeRequest::SOURCE_NOT_SET:
       break;
   }
   return Refusal(ErrorCode::kShapeSourceMissing, "source",
-                 "is missing: give an image or a polygon");
+                 "is missing: give an image, an SVG document or a polygon");
 }
 
 }  // namespace

@@ -7,12 +7,14 @@
 
 #include "drawing/decode.h"
 #include "drawing/outline.h"
+#include "drawing/svg.h"
 #include "session/digest.h"
 
 namespace posespace {
 namespace {
 
 constexpr std::string_view kImageVersion = "posespace-image/2";
+constexpr std::string_view kSvgVersion = "posespace-svg/1";
 constexpr std::string_view kPolygonVersion = "posespace-polygon/2";
 
 // One upload being read.
@@ -37,18 +39,22 @@ Error Missing(const Upload& upload, const std::string& message, const std::strin
                    {ErrorCode::kShapeSourceMissing, "there is nothing in " + message, {}});
 }
 
+// Says why a picture within the limit is too large all the same, if that is so.
+Error WithPixelsLeft(const Upload& upload, Error refused) {
+  if (refused.code == ErrorCode::kImageTooLarge &&
+      upload.pixels_left < upload.limits.max_image_pixels) {
+    refused.message += ", since the session's other pictures have taken the rest of " +
+                       std::to_string(upload.limits.max_session_pixels);
+  }
+  return refused;
+}
+
 Result<DecodedImage> Decode(const Upload& upload, const std::string& message,
                             const std::string& field, std::span<const std::uint8_t> bytes) {
-  const Limits& limits = upload.limits;
-  auto image =
-      DecodeImage(bytes, {.max_pixels = std::min(limits.max_image_pixels, upload.pixels_left)});
+  auto image = DecodeImage(
+      bytes, {.max_pixels = std::min(upload.limits.max_image_pixels, upload.pixels_left)});
   if (image) return image;
-  Error refused = std::move(image).error();
-  if (refused.code == ErrorCode::kImageTooLarge && upload.pixels_left < limits.max_image_pixels) {
-    refused.message += ", since the session's other pictures have taken the rest of " +
-                       std::to_string(limits.max_session_pixels);
-  }
-  return InRequest(upload, message, field, std::move(refused));
+  return InRequest(upload, message, field, WithPixelsLeft(upload, std::move(image).error()));
 }
 
 void Append(std::vector<std::string> more, std::vector<std::string>* warnings) {
@@ -86,6 +92,19 @@ Result<Drawing> Read(const Upload& upload, const ImageSource& source) {
   return drawing;
 }
 
+Result<Drawing> Read(const Upload& upload, const SvgSource& source) {
+  if (source.document.empty()) return Missing(upload, "svg", "document");
+  auto drawn = DrawSvg(source.document);
+  if (!drawn) return InRequest(upload, "svg", "document", std::move(drawn).error());
+  Drawing drawing =
+      TRY(FromTexture(upload, "svg", "document", std::move(drawn->texture), source.options));
+  drawing.width = drawn->width;
+  drawing.height = drawn->height;
+  Append(std::exchange(drawing.outline.warnings, std::move(drawn->warnings)),
+         &drawing.outline.warnings);
+  return drawing;
+}
+
 Result<Drawing> Read(const Upload& upload, const PolygonSource& source) {
   if (source.outer.rows() == 0) return Missing(upload, "polygon", "outer");
   auto outline = OutlineFromRings(source.outer, source.holes,
@@ -108,12 +127,21 @@ Result<Drawing> Read(const Upload& upload, const PolygonSource& source) {
   return drawing;
 }
 
-std::string DigestOf(const ImageSource& source) {
-  return Digest(kImageVersion)
-      .Add(std::span<const std::uint8_t>(source.data))
-      .Add(static_cast<std::int64_t>(source.options.foreground))
-      .Add(static_cast<std::int64_t>(source.options.threshold.value_or(-1)))
+std::string DigestOf(std::string_view version, std::span<const std::uint8_t> bytes,
+                     const ForegroundOptions& options) {
+  return Digest(version)
+      .Add(bytes)
+      .Add(static_cast<std::int64_t>(options.foreground))
+      .Add(static_cast<std::int64_t>(options.threshold.value_or(-1)))
       .Hex();
+}
+
+std::string DigestOf(const ImageSource& source) {
+  return DigestOf(kImageVersion, source.data, source.options);
+}
+
+std::string DigestOf(const SvgSource& source) {
+  return DigestOf(kSvgVersion, source.document, source.options);
 }
 
 std::string DigestOf(const PolygonSource& source) {

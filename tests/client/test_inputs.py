@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 from collections.abc import Callable
 
@@ -156,6 +157,82 @@ def test_what_is_needless_in_a_ring_is_dropped_and_told(session):
         "1 repeated point was dropped",
         "1 point within a straight run was dropped",
     ]
+
+
+# Vector drawings.
+
+HEAD = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' "
+KITE = "<path d='M-40,0 L0,-60 L40,0 L0,90 Z' fill='#c33' stroke='#333' stroke-width='4'/>"
+
+
+def svg_of(content: str, attributes: str = "viewBox='-50 -70 100 170'") -> bytes:
+    return f"{HEAD}{attributes}>{content}</svg>".encode()
+
+
+def test_an_svg_drawing_has_its_outline_in_user_units(session):
+    shape = session.put_shape("kite", svg=svg_of(KITE))
+    low, high = shape.outline[0].min(axis=0), shape.outline[0].max(axis=0)
+    assert np.allclose([low, high], [(-43, -64), (43, 95)], atol=3)
+    assert shape.size == (100, 170)
+    assert shape.warnings == []
+    assert shape.texture.scale > 5
+
+
+def test_an_svg_drawing_builds_beside_a_picture_and_renders(client, tmp_path):
+    session = client.create_session()
+    file = tmp_path / "kite.svg"
+    file.write_bytes(svg_of(KITE))
+    session.put_shape("kite", svg=file)
+    session.put_shape("packed", svg=gzip.compress(svg_of(KITE.replace("90", "60"))))
+    session.build()
+    pixels = session.render(at=session.state().placements["kite"])
+    assert (pixels[..., 3] > 250).sum() > 5000
+    mesh = session.mesh()
+    assert mesh.vertices["kite"][:, 0].min() == pytest.approx(-43, abs=4)
+    session.delete()
+
+
+def test_an_svg_page_loses_its_paper(session):
+    page = svg_of("<rect x='-50' y='-70' width='100' height='170' fill='white'/>" + KITE)
+    shape = session.put_shape("kite", svg=page)
+    assert shape.outline[0][:, 0].max() < 47
+    assert any("its paper" in word for word in shape.warnings)
+
+
+def test_a_dark_svg_drawing_on_a_light_page(session):
+    page = svg_of("<rect x='-50' y='-70' width='100' height='170' fill='#eee'/>" + KITE)
+    shape = session.put_shape("kite", svg=page, foreground="dark", threshold=60)
+    assert shape.outline[0][:, 0].max() < 47
+
+
+@pytest.mark.parametrize(
+    ("document", "reason"),
+    [
+        (b"", "SHAPE_SOURCE_MISSING"),
+        (b"hello", "IMAGE_UNDECODABLE"),
+        (svg_of("<rect")[:-8], "IMAGE_UNDECODABLE"),
+        (svg_of(""), "OUTLINE_EMPTY"),
+        (svg_of(KITE, "viewBox='0 0 1e9 1e9'"), "IMAGE_TOO_LARGE"),
+        (gzip.compress(b" " * (33 << 20)), "IMAGE_TOO_LARGE"),
+        (gzip.compress(svg_of(KITE))[:-30], "IMAGE_UNDECODABLE"),
+    ],
+)
+def test_a_document_that_is_no_drawing_is_refused_by_name(session, document, reason):
+    with pytest.raises(posespace.InvalidDrawing, match="'kite'") as refusal:
+        session.put_shape("kite", svg=document)
+    assert refusal.value.reason == reason
+    assert list(refusal.value.fields) == ["svg.document"]
+
+
+def test_a_threshold_of_an_svg_is_named_by_its_path(session):
+    with pytest.raises(posespace.InvalidArgument) as refusal:
+        session.put_shape("kite", svg=svg_of(KITE), threshold=0)
+    assert list(refusal.value.fields) == ["svg.threshold"]
+
+
+def test_two_sources_at_once_are_refused(session):
+    with pytest.raises(posespace.InvalidArgument, match="svg"):
+        session.put_shape("kite", svg=svg_of(KITE), polygon=star())
 
 
 # Hostile files.

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 
 from numpy.typing import ArrayLike
@@ -12,7 +13,7 @@ from posespace.building import OnProgress, build_and_wait
 from posespace.channel import Channel
 from posespace.errors import InvalidArgument
 from posespace.messages import Foreground, Place
-from posespace.pictures import Picture, picture_bytes
+from posespace.pictures import Picture, file_bytes, picture_bytes
 from posespace.results import Build, BuildReport, SessionState, Shape, Suggestion
 from posespace.v1 import session_service_pb2
 
@@ -61,6 +62,7 @@ class Authoring:
         shape_id: str,
         *,
         image: Picture | None = None,
+        svg: str | os.PathLike[str] | bytes | None = None,
         foreground: Foreground = "alpha",
         threshold: int | None = None,
         polygon: ArrayLike | None = None,
@@ -73,9 +75,12 @@ class Authoring:
             session.put_shape("stand", image="stand.png")
             session.put_shape("jump", image=pixels)             # (H, W, 3 or 4) uint8, or bytes
             session.put_shape("run", image="scan.jpg", foreground="dark")
+            session.put_shape("wave", svg="wave.svg")
             session.put_shape("star", polygon=ring, holes=[ring])
 
         image       Path or bytes of a PNG, JPEG or WebP file, or array with straight alpha.
+        svg         Path or bytes of an SVG document or its gzip; one user unit is one drawing
+                    pixel.  Nothing outside the document is loaded.
         foreground  Which pixels are the drawing.  "alpha": those whose alpha reaches the threshold;
                     a picture that is opaque all over loses its paper, the one colour around the
                     drawing.  "light", "dark": those lighter, or darker, than the plain background.
@@ -97,19 +102,22 @@ class Authoring:
             shape_id=shape_id,
             replace=replace,
         )
-        if image is not None and polygon is not None:
+        options = {"foreground": messages.foreground(foreground), "threshold": threshold}
+        sources = {"image": image, "svg": svg, "polygon": polygon}
+        given = [name for name, value in sources.items() if value is not None]
+        if len(given) > 1:
             raise InvalidArgument(
-                f"shape '{shape_id}': give either image= or polygon=", reason="INVALID_OPTION"
+                f"shape '{shape_id}': give one of image=, svg= and polygon=, not {given}",
+                reason="INVALID_OPTION",
             )
         if image is not None:
-            source = messages.make(
-                session_service_pb2.ImageSource,
-                foreground=messages.foreground(foreground),
-                threshold=threshold,
-            )
             with messages.argument("image", image):
-                source.data = picture_bytes(image, shape_id)
-            request.image.CopyFrom(source)
+                request.image.data = picture_bytes(image, shape_id)
+            request.image.MergeFrom(messages.make(session_service_pb2.ImageSource, **options))
+        if svg is not None:
+            with messages.argument("svg", svg):
+                request.svg.document = file_bytes(svg)
+            request.svg.MergeFrom(messages.make(session_service_pb2.SvgSource, **options))
         if polygon is not None:
             what = f"shape '{shape_id}': "
             request.polygon.outer.CopyFrom(messages.ring(polygon, what + "polygon"))

@@ -16,16 +16,21 @@ from posespace.errors import InvalidDrawing
 Picture = str | os.PathLike[str] | bytes | bytearray | memoryview | NDArray[np.uint8]
 
 
+def file_bytes(file: str | os.PathLike[str] | bytes | bytearray | memoryview) -> bytes:
+    """What is in a file, named by its path, or given.  Raises OSError."""
+    if isinstance(file, bytes | bytearray | memoryview):
+        return bytes(file)
+    return Path(file).read_bytes()
+
+
 def picture_bytes(picture: Picture, name: str) -> bytes:
     """The picture file of a path, its bytes, or an array (H, W, 3 or 4) uint8, rows from the top,
     straight alpha.  `name` is the drawing, for errors.
 
     Raises InvalidDrawing for other arrays, OSError for files that cannot be read.
     """
-    if isinstance(picture, bytes | bytearray | memoryview):
-        return bytes(picture)
-    if isinstance(picture, str | os.PathLike):
-        return Path(picture).read_bytes()
+    if isinstance(picture, str | os.PathLike | bytes | bytearray | memoryview):
+        return file_bytes(picture)
     pixels = np.asarray(picture)
     good = pixels.ndim == 3 and pixels.shape[2] in (3, 4) and pixels.dtype == np.uint8
     if not good or pixels.size == 0:
