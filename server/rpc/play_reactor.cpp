@@ -5,8 +5,12 @@
 
 namespace posespace {
 
-PlayReactor::PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& pool)
-    : streams_(streams), pool_(pool), stream_(registry, registry.limits(), *this) {
+PlayReactor::PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& blends,
+                         ComputePool& loads)
+    : streams_(streams),
+      blends_(blends),
+      loads_(loads),
+      stream_(registry, registry.limits(), *this) {
   auto admitted = streams_.Add(this);
   admitted_ = admitted.has_value();
   if (admitted_) {

@@ -25,6 +25,8 @@ class PlayTransport {
   virtual void StartWrite(const v1::PlayResponse* message) = 0;
   // Has PlayStream::Work called on a thread that may be busy for long.
   virtual void ScheduleWork() = 0;
+  // The same on a thread that may wait for a disk.
+  virtual void ScheduleLoad() = 0;
   // The last call.  The stream may be deleted once all that was started has come back.
   virtual void Finish(Result<void> outcome) = 0;
 
@@ -70,7 +72,7 @@ class PlayStream {
     std::size_t bytes;
     bool completes = false;  // the last answer to a message that was read
   };
-  enum class Next { kWait, kWorkHere, kScheduleWork, kFinish };
+  enum class Next { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
 
   void Queue(v1::PlayResponse message);
   void End(Result<void> outcome);
