@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One real posespaced for all tests that leave it alive, and a built session to read from."""
+"""An empty session to write to, and a built one to read from."""
 
 from __future__ import annotations
 
@@ -8,18 +8,6 @@ from collections.abc import Iterator
 import posespace
 import pytest
 from synthetic_drawings import WALK, figure
-
-
-@pytest.fixture(scope="session")
-def server() -> Iterator[posespace.LocalServer]:
-    with posespace.serve_locally() as running:
-        yield running
-
-
-@pytest.fixture(scope="session")
-def client(server: posespace.LocalServer) -> Iterator[posespace.Client]:
-    with posespace.connect(server.address, timeout=10.0) as connected:
-        yield connected
 
 
 @pytest.fixture
