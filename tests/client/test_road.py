@@ -8,8 +8,8 @@ import math
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from synthetic_drawings import WALK, figure, png_of, star
+from walk_session import make_walk
 
 STAND = figure(**WALK["stand"])
 
