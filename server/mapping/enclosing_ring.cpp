@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/polygon.h"
 
@@ -226,10 +225,14 @@ bool EnclosingRing::IsObstructed(const EdgeContext& at, const EdgeCollapse& coll
   if (Overlap(p, x, vertices_[at.before_p]) || Overlap(q, x, vertices_[at.after_q])) return true;
 
   const double reach = kGapLimit * tolerance_;
-  double gap = reach, old_gap = std::numeric_limits<double>::infinity();
+  const Point margin(reach, reach);
+  const Point low = p.cwiseMin(x).cwiseMin(q) - margin, high = p.cwiseMax(x).cwiseMax(q) + margin;
+  double gap = reach, old_gap = reach;
   const auto blocks = [&](int edge) {
     if (edge == at.p || edge == at.a || edge == at.b) return false;  // these go
     const Point &c = vertices_[edge], &d = vertices_[next[edge]];
+    if ((c.cwiseMin(d).array() > high.array()).any()) return false;
+    if ((c.cwiseMax(d).array() < low.array()).any()) return false;
     const bool touches_p = next[edge] == at.p, touches_q = edge == at.q;
     if (!touches_p && SegmentsMeet(p, x, c, d)) return true;
     if (!touches_q && SegmentsMeet(x, q, c, d)) return true;
@@ -238,9 +241,8 @@ bool EnclosingRing::IsObstructed(const EdgeContext& at, const EdgeCollapse& coll
     old_gap = std::min({old_gap, Distance(p, a, c, d), Distance(a, b, c, d), Distance(b, q, c, d)});
     return false;
   };
-  const Point margin(reach, reach);
-  const Point low = p.cwiseMin(x).cwiseMin(q) - margin, high = p.cwiseMax(x).cwiseMax(q) + margin;
-  return grid_.AnyNear(low, high, blocks) || (gap < reach && gap < kGapKept * old_gap);
+  return grid_.AnyNear(p, x, reach, blocks) || grid_.AnyNear(x, q, reach, blocks) ||
+         gap < kGapKept * old_gap;
 }
 
 void EnclosingRing::Apply(const EdgeContext& at, const EdgeCollapse& collapse, int kept) {
