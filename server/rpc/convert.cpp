@@ -227,6 +227,7 @@ void ToProto(const Drawing& drawing, v1::Shape* shape) {
   shape->set_height(drawing.height);
   ToProto(drawing.outline, shape->mutable_outline());
   shape->set_holes_filled(drawing.outline.holes_filled);
+  shape->set_flipped(drawing.flipped);
   for (const std::string& warning : drawing.outline.warnings) {
     shape->add_warnings(CleanText(warning, kTextBytes));
   }

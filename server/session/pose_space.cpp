@@ -59,8 +59,8 @@ std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& i
   for (std::size_t i = 0; i < report.confidence.size(); ++i) {
     if (mapping.proposal.flips[i]) {
       warnings.push_back("drawing '" + inputs.drawings[i]->id +
-                         "' seems to face the other way: suggest() shows it; if it does, put its "
-                         "mirror image");
+                         "' seems to face the other way: suggest() shows it; if it does, put it "
+                         "again with flip");
       continue;
     }
     if (report.confidence[i] >= kLeastConfidence || IsMarked(inputs, i)) continue;

@@ -22,8 +22,9 @@ namespace posespace {
 // A drawing as it was uploaded and understood.  Immutable.
 struct Drawing {
   std::string id;
-  std::string digest;  // of the source and its options
-  double width = 0.0;  // drawing pixels
+  std::string digest;    // of the source, its options, and whether it is flipped
+  bool flipped = false;  // what follows is the mirror image of what was uploaded
+  double width = 0.0;    // drawing pixels
   double height = 0.0;
   Outline outline;
   Texture texture;

@@ -68,6 +68,7 @@ class Authoring:
         polygon: ArrayLike | None = None,
         holes: Sequence[ArrayLike] = (),
         texture: Picture | None = None,
+        flip: bool = False,
         replace: bool = False,
     ) -> Shape:
         """Adds a drawing and answers how it was understood.
@@ -89,6 +90,10 @@ class Authoring:
         polygon     Ring (K, 2) in drawing pixels, either orientation; `holes` likewise.  A ring
                     that crosses itself is filled by the non-zero rule and traced anew.
         texture     Picture whose pixels are the polygon's drawing pixels; one colour without it.
+        flip        Keep its mirror image, as accepted from `suggest`: left and right exchanged
+                    about the middle of the picture, or of the polygon's box when it has none.
+                    Outline, marks and mesh are then in the mirror image's coordinates; marks in
+                    the same drawing unflipped move with it.
         replace     Overwrite a drawing of the same id.
 
         Whatever was done to the drawing is said in the answer's `warnings`.
@@ -100,6 +105,7 @@ class Authoring:
             session_service_pb2.PutShapeRequest,
             session_id=self._id,
             shape_id=shape_id,
+            flip=flip,
             replace=replace,
         )
         options = {"foreground": messages.foreground(foreground), "threshold": threshold}
@@ -178,7 +184,7 @@ class Authoring:
             found = session.suggest()
             for shape_id in found.flips:                 # they seem to face the other way:
                 show(shape_id, found.confidence, found.arcs, found.starts)    # ask a person, then
-                session.put_shape(shape_id, image=mirrored[shape_id], replace=True)
+                session.put_shape(shape_id, image=..., flip=True, replace=True)
 
         Nothing is changed: flips are proposals, which are wrong for a drawing that only looks as if
         it faced the other way.

@@ -203,6 +203,7 @@ def shape(message: session_service_pb2.Shape) -> results.Shape:
         holes_filled=message.holes_filled,
         warnings=list(message.warnings),
         texture=_texture(message.texture),
+        flipped=message.flipped,
     )
 
 

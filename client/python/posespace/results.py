@@ -35,6 +35,7 @@ class Shape:
     holes_filled  Holes that the mesh covers; transparency keeps them see-through.
     warnings      What was done to the drawing, in words.
     texture       Where the drawing's pixels lie.
+    flipped       It is the mirror image of what was uploaded.
     """
 
     id: str
@@ -43,6 +44,7 @@ class Shape:
     holes_filled: int
     warnings: list[str]
     texture: TexturePlacement
+    flipped: bool
 
 
 @dataclass(frozen=True, eq=False)
