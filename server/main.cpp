@@ -15,6 +15,7 @@
 #include "ops/port_file.h"
 #include "ops/termination.h"
 #include "rpc/server.h"
+#include "store/open_store.h"
 
 namespace {
 
@@ -52,7 +53,10 @@ int main(int argc, char** argv) {
   const posespace::Termination termination;
   posespace::SetUpLogging(config.log_level);
 
-  const auto server = posespace::Server::Start(config.listen, config.limits);
+  auto store = posespace::OpenStore(config.store);
+  if (!store) return Refuse(store.error());
+  const auto server =
+      posespace::Server::Start(config.listen, config.limits, std::move(store).value());
   if (!server) return Refuse(server.error());
   if (!config.port_file.empty()) {
     if (auto written = posespace::WritePortFile(config.port_file, (*server)->port()); !written) {
@@ -60,7 +64,7 @@ int main(int argc, char** argv) {
     }
   }
   std::cout << "posespace ready grpc=" << (*server)->address() << std::endl;
-  spdlog::info("event=ready grpc={}", (*server)->address());
+  spdlog::info("event=ready grpc={} store={}", (*server)->address(), config.store);
 
   termination.Wait();
   EndAtLatest(config.drain_grace + milliseconds(5000));

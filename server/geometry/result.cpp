@@ -97,6 +97,10 @@ std::string_view ReasonName(ErrorCode code) {
       return "DRAINING";
     case ErrorCode::kProtocolBreach:
       return "PROTOCOL_BREACH";
+    case ErrorCode::kStoreUnavailable:
+      return "STORE_UNAVAILABLE";
+    case ErrorCode::kSnapshotCorrupt:
+      return "SNAPSHOT_CORRUPT";
     case ErrorCode::kInternal:
       return "INTERNAL";
   }

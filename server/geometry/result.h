@@ -64,7 +64,9 @@ enum class ErrorCode {
   kBuildQueueFull,
   kComputeQueueFull,
   kDraining,
-  kProtocolBreach,  // a stream message that makes no sense in its state
+  kProtocolBreach,    // a stream message that makes no sense in its state
+  kStoreUnavailable,  // what should be kept cannot be written, or read, at present
+  kSnapshotCorrupt,   // stored bytes are damaged
   kInternal,
 };
 

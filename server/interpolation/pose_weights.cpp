@@ -111,9 +111,26 @@ struct PoseWeights::Field {
     LatticeData data;
   };
 
+  // Lattice and chart of at least two placements, without the data.
+  static Surface Over(const Points& placements, double diameter);
+
   int num_poses;
   std::optional<Surface> surface;  // none for a single pose: its weight is 1 everywhere
 };
+
+PoseWeights::Field::Surface PoseWeights::Field::Over(const Points& placements, double diameter) {
+  const Chart chart{placements.colwise().minCoeff().transpose(), diameter};
+  Points in_domain(placements.rows(), 2);
+  Point size = Point::Zero();
+  for (Eigen::Index i = 0; i < placements.rows(); ++i) {
+    const Point place = chart.ToDomain(placements.row(i).transpose());
+    in_domain.row(i) = place;
+    size = size.cwiseMax(place + Point::Constant(kMargin));
+  }
+  PoseLattice lattice = TessellateAround(in_domain, size, kSpacing);
+  TriangleLocator locator(lattice.vertices, lattice.triangles, size, lattice.spacing);
+  return {chart, std::move(lattice), std::move(locator), {}};
+}
 
 Result<PoseWeights> PoseWeights::Fit(const Points& placements, const PoseWeightsOptions& options,
                                      Progress* progress) {
@@ -128,21 +145,34 @@ Result<PoseWeights> PoseWeights::Fit(const Points& placements, const PoseWeights
     return PoseWeights(std::make_shared<const Field>(Field{1, std::nullopt}));
   }
 
-  const Chart chart{placements.colwise().minCoeff().transpose(), spread.diameter};
-  Points in_domain(placements.rows(), 2);
-  for (Eigen::Index i = 0; i < placements.rows(); ++i) {
-    in_domain.row(i) = chart.ToDomain(placements.row(i).transpose());
-  }
-  const Point size = in_domain.colwise().maxCoeff().transpose() + Point::Constant(kMargin);
-
-  PoseLattice lattice = TessellateAround(in_domain, size, kSpacing);
+  Field::Surface surface = Field::Over(placements, spread.diameter);
   Report(progress, 0.2);
-  LatticeData data = TRY(FitBiharmonic(lattice, options.levelling, progress));
-  TriangleLocator locator(lattice.vertices, lattice.triangles, size, lattice.spacing);
+  surface.data = TRY(FitBiharmonic(surface.lattice, options.levelling, progress));
   Report(progress, 1.0);
   return PoseWeights(std::make_shared<const Field>(
-      Field{static_cast<int>(placements.rows()),
-            Field::Surface{chart, std::move(lattice), std::move(locator), std::move(data)}}));
+      Field{static_cast<int>(placements.rows()), std::move(surface)}));
+}
+
+LatticeData PoseWeights::fit() const {
+  return field_->surface ? field_->surface->data : LatticeData();
+}
+
+Result<PoseWeights> PoseWeights::FromFit(const Points& placements, LatticeData fit) {
+  const Spread spread = SpreadOf(placements);
+  if (auto refusal = Refusal(placements, spread)) return *std::move(refusal);
+  std::optional<Field::Surface> surface;
+  if (placements.rows() > 1) surface = Field::Over(placements, spread.diameter);
+  const Eigen::Index rows = surface ? 3 * surface->lattice.vertices.rows() : 0;
+  const Eigen::Index columns = surface ? placements.rows() : 0;
+  if (fit.rows() != rows || fit.cols() != columns) {
+    return Error{ErrorCode::kSizeMismatch, "the weights are not those of these placements", {}};
+  }
+  if (!fit.allFinite()) {
+    return Error{ErrorCode::kWeightsNotFinite, "the weights are not finite", {}};
+  }
+  if (surface) surface->data = std::move(fit);
+  return PoseWeights(std::make_shared<const Field>(
+      Field{static_cast<int>(placements.rows()), std::move(surface)}));
 }
 
 Eigen::VectorXd PoseWeights::At(const Point& point) const {
@@ -166,5 +196,14 @@ Eigen::VectorXd PoseWeights::At(const Point& point) const {
 }
 
 int PoseWeights::num_poses() const { return field_->num_poses; }
+
+std::int64_t PoseWeights::MemoryBytes() const {
+  if (!field_->surface) return sizeof(Field);
+  const auto& [chart, lattice, locator, data] = *field_->surface;
+  // The lattice is held twice, by itself and with its neighbours in the locator.
+  const std::size_t numbers = data.size() + 2 * lattice.vertices.size();
+  const std::size_t indices = 3 * lattice.triangles.size();
+  return static_cast<std::int64_t>(numbers * sizeof(double) + indices * sizeof(std::int32_t));
+}
 
 }  // namespace posespace

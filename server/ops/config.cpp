@@ -10,9 +10,12 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <string_view>
 
 namespace posespace {
 namespace {
+
+constexpr std::string_view kSqlite = "sqlite:";
 
 // POSESPACED_MAX_SESSIONS for --max-sessions.
 std::string EnvironmentName(std::string flag) {
@@ -59,6 +62,8 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout, int& stream_ag
            "pictures of one Render along a path");
   const std::string running = "Limits on how much runs at once";
   AddLimit(app, running, "--max-sessions", limits.max_sessions, "sessions");
+  AddLimit(app, running, "--max-memory-bytes", limits.max_memory_bytes,
+           "sessions in memory; beyond it those that nobody uses stay in the store");
   AddLimit(app, running, "--max-streams", limits.max_streams, "open streams");
   AddLimit(app, running, "--max-picture-bytes", limits.max_picture_bytes,
            "rendered pictures that wait to be read");
@@ -75,6 +80,20 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout, int& stream_ag
 }
 
 }  // namespace
+
+std::string DefaultStore() {
+  const auto absolute = [](const char* name) {
+    const char* const value = std::getenv(name);
+    return value != nullptr && value[0] == '/' ? std::string(value) : std::string();
+  };
+  std::string data = absolute("XDG_DATA_HOME");
+  if (data.empty()) {
+    const std::string home = absolute("HOME");
+    if (home.empty()) return "";
+    data = home + "/.local/share";
+  }
+  return std::string(kSqlite) + data + "/posespace/posespaced.sqlite";
+}
 
 bool IsLocal(const std::string& listen) {
   if (listen.starts_with("unix:")) return true;
@@ -108,8 +127,16 @@ Result<void> CheckConfig(const Config& config) {
   if (unix_socket && !config.port_file.empty()) {
     return refuse("--port-file needs a TCP address, not " + config.listen);
   }
-  if (config.store != "memory") {
-    return refuse("--store '" + config.store + "' is not available; this version has: memory");
+  if (config.store.empty()) {
+    return refuse(
+        "there is no home directory to keep sessions in: say --store sqlite:PATH or memory");
+  }
+  if (config.store.starts_with("postgres")) {
+    return refuse("--store '" + config.store + "' is not in this version: memory, sqlite:PATH are");
+  }
+  if (config.store != "memory" &&
+      (!config.store.starts_with(kSqlite) || config.store.size() == kSqlite.size())) {
+    return refuse("--store '" + config.store + "' is neither memory nor sqlite:PATH");
   }
   return {};
 }
@@ -122,7 +149,8 @@ Config ParseCommandLine(int argc, const char* const* argv, const std::string& ve
   AddOption(app, service, "--listen", config.listen, "ADDR:PORT (port 0: any) or unix:PATH");
   AddOption(app, service, "--port-file", config.port_file,
             "file that gets the port once the service answers");
-  AddOption(app, service, "--store", config.store, "where sessions are kept: memory");
+  AddOption(app, service, "--store", config.store,
+            "where sessions are kept: sqlite:PATH, a file for one process at a time, or memory");
   AddOption(app, service, "--log-level", config.log_level, "what to log, to stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
   app.add_flag("--insecure", config.insecure, "allow plain text beyond this machine")

@@ -10,12 +10,16 @@
 
 namespace posespace {
 
+// The store of somebody who named none: sqlite:, in XDG_DATA_HOME/posespace, or
+// ~/.local/share/posespace; empty where neither XDG_DATA_HOME nor HOME says where that is.
+std::string DefaultStore();
+
 // What posespaced was told, by flags or by the environment: --max-sessions is
 // POSESPACED_MAX_SESSIONS.
 struct Config {
   std::string listen = "127.0.0.1:7433";  // ADDR:PORT, port 0 for any; or unix:PATH
   std::string port_file;                  // where the port is written once the service answers
-  std::string store = "memory";
+  std::string store = DefaultStore();     // "memory" or "sqlite:PATH"
   std::string log_level = "info";
   bool insecure = false;                        // allow plain text beyond this machine
   std::chrono::milliseconds drain_grace{5000};  // how long open streams may take to end

@@ -14,18 +14,19 @@ constexpr int kTurn = 8;    // frames, about a millisecond
 }  // namespace
 
 AnimateStream::AnimateStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
-                             const v1::AnimateRequest& request)
+                             ComputePool& loads, const v1::AnimateRequest& request)
     : SequenceStream(Call("Animate"), streams, pool, kAhead, kTurn), request_(request) {
-  if (auto begun = Guarded([&] { return Begin(registry); }); !begun) Close(std::move(begun));
+  BeginWith(request_.session_id(), registry, loads,
+            [this, &limits = registry.limits()](const std::shared_ptr<Session>& session) {
+              return Begin(*session, limits);
+            });
   Release();
 }
 
-Result<void> AnimateStream::Begin(const Registry& registry) {
-  const auto session = TRY(registry.Find(request_.session_id()));
-  pose_space_ = TRY(session->Built());
+Result<void> AnimateStream::Begin(const Session& session, const Limits& limits) {
+  pose_space_ = TRY(session.Built());
   TRY(CheckRevision(*pose_space_, request_.revision()));
-  frames_ =
-      TRY(AnimationFrames::From(request_.animation(), registry.limits().max_animation_frames));
+  frames_ = TRY(AnimationFrames::From(request_.animation(), limits.max_animation_frames));
   start_ = Clock::now();
   return Start(frames_->count());
 }

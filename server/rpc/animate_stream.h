@@ -15,11 +15,12 @@ namespace posespace {
 // The answer to one Animate: frames along a path, all of one revision.
 class AnimateStream final : public SequenceStream<v1::AnimateResponse> {
  public:
+  // Frames are made on `pool`; a session that must be loaded is, on `loads`.
   AnimateStream(const Registry& registry, LiveStreams& streams, ComputePool& pool,
-                const v1::AnimateRequest& request);
+                ComputePool& loads, const v1::AnimateRequest& request);
 
  private:
-  Result<void> Begin(const Registry& registry);
+  Result<void> Begin(const Session& session, const Limits& limits);
   Result<v1::AnimateResponse> Make(int index) override;
   Clock::time_point Due(int index) const override;
 

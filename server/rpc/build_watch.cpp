@@ -7,26 +7,24 @@
 
 namespace posespace {
 
-BuildWatch::BuildWatch(const Registry& registry, LiveStreams& streams,
+BuildWatch::BuildWatch(const Registry& registry, LiveStreams& streams, ComputePool& pool,
                        const v1::WatchBuildRequest& request)
-    : StreamWriter(Call("WatchBuild")), streams_(streams) {
-  if (auto begun = Guarded([&] { return Begin(registry, request); }); !begun) {
-    Close(std::move(begun));
-  }
+    : StreamWriter(Call("WatchBuild")), streams_(streams), request_(request) {
+  BeginWith(request_.session_id(), registry, pool,
+            [this](const std::shared_ptr<Session>& session) { return Begin(*session); });
   Release();
 }
 
-Result<void> BuildWatch::Begin(const Registry& registry, const v1::WatchBuildRequest& request) {
-  const auto session = TRY(registry.Find(request.session_id()));
-  auto job = session->LatestBuild();
+Result<void> BuildWatch::Begin(const Session& session) {
+  auto job = session.LatestBuild();
   if (!job) {
     return Error{
-        ErrorCode::kBuildNotFound, "session '" + session->id() + "' has had no build yet", {}};
+        ErrorCode::kBuildNotFound, "session '" + session.id() + "' has had no build yet", {}};
   }
   TRY(streams_.Add(this));
   // A number beyond the build's own is not of this session, which may have been made anew.
-  const bool resumed = request.after_sequence() <= job->Status().sequence;
-  after_sequence_ = resumed ? request.after_sequence() : 0;
+  const bool resumed = request_.after_sequence() <= job->Status().sequence;
+  after_sequence_ = resumed ? request_.after_sequence() : 0;
   job_ = std::move(job);
   token_ = job_->Watch([this](const BuildStatus& status) { OnChange(status); });
   return {};

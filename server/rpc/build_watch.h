@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "posespace/v1/session_service.pb.h"
+#include "rpc/compute_pool.h"
 #include "rpc/live_streams.h"
 #include "rpc/stream_writer.h"
 #include "session/build_job.h"
@@ -20,10 +21,12 @@ namespace posespace {
 // is slower than the changes.
 class BuildWatch final : public StreamWriter<v1::WatchBuildResponse>, private LiveStream {
  public:
-  BuildWatch(const Registry& registry, LiveStreams& streams, const v1::WatchBuildRequest& request);
+  // A session that must be loaded is, on `pool`.
+  BuildWatch(const Registry& registry, LiveStreams& streams, ComputePool& pool,
+             const v1::WatchBuildRequest& request);
 
  private:
-  Result<void> Begin(const Registry& registry, const v1::WatchBuildRequest& request);
+  Result<void> Begin(const Session& session);
   void OnChange(const BuildStatus& status);
   void SendNewest();  // under mutex_
   void OnWritten(std::size_t waiting) override;
@@ -32,6 +35,7 @@ class BuildWatch final : public StreamWriter<v1::WatchBuildResponse>, private Li
   void Drain(std::chrono::milliseconds) override {}  // the build ends, and so this
 
   LiveStreams& streams_;
+  const v1::WatchBuildRequest& request_;  // gRPC keeps it for the call
   std::shared_ptr<BuildJob> job_;
   std::int64_t token_ = 0;
   std::int64_t after_sequence_ = 0;

@@ -7,12 +7,15 @@
 #include <grpcpp/support/status.h>
 
 #include <chrono>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "geometry/result.h"
 #include "rpc/compute_pool.h"
 #include "rpc/shown_error.h"
+#include "session/registry.h"
 
 namespace posespace {
 
@@ -60,6 +63,22 @@ grpc::ServerUnaryReactor* ReplyFrom(ComputePool& pool, grpc::CallbackServerConte
         Error{ErrorCode::kComputeQueueFull, "too much work is waiting; try again later", {}}));
   }
   return reactor;
+}
+
+// Answers a unary call about one session by handler(session): at once when the session is in
+// memory, else from a pool, which loads it.  For handlers as Reply has them.
+template <typename Handler>
+grpc::ServerUnaryReactor* ReplyAbout(const std::string& session_id, const Registry& registry,
+                                     ComputePool& pool, grpc::CallbackServerContext* context,
+                                     std::string_view method, Handler handler) {
+  auto session = registry.Peek(session_id);
+  if (session && *session == nullptr) {
+    return ReplyFrom(pool, context, method,
+                     [&session_id, &registry, handler = std::move(handler)]() -> Result<void> {
+                       return handler(TRY(registry.Find(session_id)));
+                     });
+  }
+  return Reply(context, method, [&]() -> Result<void> { return handler(TRY(std::move(session))); });
 }
 
 }  // namespace posespace

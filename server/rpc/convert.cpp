@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/convert.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -240,7 +241,7 @@ void ToProto(const BuildStatus& status, v1::Build* build) {
   build->set_stage(status.stage);
   build->set_fraction(status.fraction);
   build->set_sequence(status.sequence);
-  if (status.pose_space) ToProto(*status.pose_space, build->mutable_report());
+  if (status.summary) ToProto(*status.summary, build->mutable_report());
   if (status.error) {
     const Error error = Shown(*status.error);
     build->mutable_error()->set_reason(std::string(ReasonName(error.code)));
@@ -258,12 +259,11 @@ void ToProto(const Texture& texture, v1::TexturePlacement* placement) {
   placement->set_height(texture.image.height);
 }
 
-void ToProto(const PoseSpace& pose_space, v1::BuildReport* report) {
-  const MappingReport& mapping = pose_space.report();
-  const auto& drawings = pose_space.drawings();
-  report->set_revision(pose_space.revision());
-  report->set_vertices(pose_space.mesh().num_vertices());
-  report->set_triangles(pose_space.mesh().num_triangles());
+void ToProto(const BuildSummary& summary, v1::BuildReport* report) {
+  const MappingReport& mapping = summary.mapping;
+  report->set_revision(summary.revision);
+  report->set_vertices(summary.vertices);
+  report->set_triangles(summary.triangles);
   report->set_outline_vertices(mapping.outline_vertices);
   report->set_steiner_vertices(mapping.steiner_vertices);
   report->set_min_angle(mapping.min_angle);
@@ -271,10 +271,11 @@ void ToProto(const PoseSpace& pose_space, v1::BuildReport* report) {
   for (const auto& [stage, seconds] : mapping.seconds) {
     (*report->mutable_seconds())[stage] = seconds;
   }
-  for (std::size_t k = 0; k < drawings.size() && k < mapping.confidence.size(); ++k) {
-    (*report->mutable_confidence())[drawings[k]->id] = mapping.confidence[k];
+  const std::size_t count = std::min(summary.shape_ids.size(), mapping.confidence.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    (*report->mutable_confidence())[summary.shape_ids[k]] = mapping.confidence[k];
   }
-  for (const std::string& warning : pose_space.warnings()) {
+  for (const std::string& warning : summary.warnings) {
     report->add_warnings(CleanText(warning, kTextBytes));
   }
 }
@@ -298,7 +299,7 @@ void ToProto(const PoseSpace& pose_space, v1::Mesh* mesh) {
     ToProto(drawing.texture, out->mutable_texture());
   }
   mesh->mutable_landmarks()->Assign(compatible.landmarks.begin(), compatible.landmarks.end());
-  ToProto(pose_space, mesh->mutable_report());
+  ToProto(pose_space.Summary(), mesh->mutable_report());
 }
 
 }  // namespace posespace

@@ -36,7 +36,7 @@ void ToProto(const Suggestion& suggestion, v1::SuggestCorrespondencesResponse* r
 void ToProto(const Drawing& drawing, v1::Shape* shape);
 void ToProto(const BuildStatus& status, v1::Build* build);
 void ToProto(const Texture& texture, v1::TexturePlacement* placement);
-void ToProto(const PoseSpace& pose_space, v1::BuildReport* report);
+void ToProto(const BuildSummary& summary, v1::BuildReport* report);
 void ToProto(const PoseSpace& pose_space, v1::Mesh* mesh);
 
 }  // namespace posespace

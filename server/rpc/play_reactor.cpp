@@ -17,9 +17,11 @@ PlayStream::Clock::time_point OldAt(std::chrono::seconds age) {
 
 }  // namespace
 
-PlayReactor::PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& pool)
+PlayReactor::PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& blends,
+                         ComputePool& loads)
     : streams_(streams),
-      pool_(pool),
+      blends_(blends),
+      loads_(loads),
       stream_(registry, registry.limits(), *this, OldAt(registry.limits().max_stream_age)) {
   auto admitted = streams_.Add(this);
   admitted_ = admitted.has_value();

@@ -20,7 +20,9 @@ class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::Pl
                           private PlayTransport,
                           private LiveStream {
  public:
-  PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& pool);
+  // Long blends run on `blends`; sessions are loaded on `loads`.
+  PlayReactor(const Registry& registry, LiveStreams& streams, ComputePool& blends,
+              ComputePool& loads);
 
  private:
   void OnReadDone(bool ok) override { stream_.OnRead(ok); }
@@ -33,7 +35,10 @@ class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::Pl
     ServerBidiReactor::StartWrite(message);
   }
   void ScheduleWork() override {
-    pool_.Post([this] { stream_.Work(); });
+    blends_.Post([this] { stream_.Work(); });
+  }
+  void ScheduleLoad() override {
+    loads_.Post([this] { stream_.Work(); });
   }
   void Finish(Result<void> outcome) override {
     ServerBidiReactor::Finish(call_.End(std::move(outcome)));
@@ -44,7 +49,8 @@ class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::Pl
 
   const Call call_{"Play"};
   LiveStreams& streams_;
-  ComputePool& pool_;
+  ComputePool& blends_;
+  ComputePool& loads_;
   PlayStream stream_;
   bool admitted_ = false;
 };

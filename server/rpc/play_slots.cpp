@@ -65,7 +65,7 @@ void PlaySlots::Bind(const v1::PlayRequest::Bind& bind, const Send& send) {
   send(std::move(response));
 }
 
-Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) const {
+Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) {
   if (bind.slot() >= static_cast<std::uint32_t>(limits_.max_stream_slots)) {
     return Error{ErrorCode::kSlotLimit,
                  "slot " + std::to_string(bind.slot()) + " is not below " +
@@ -73,7 +73,10 @@ Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) const
                  {}};
   }
   Slot slot;
-  slot.session = TRY(registry_.Find(bind.session_id()));
+  slot.session = std::exchange(next_bound_, nullptr);
+  if (slot.session == nullptr || slot.session->id() != bind.session_id()) {
+    slot.session = TRY(registry_.Find(bind.session_id()));
+  }
   slot.pose_space = TRY(slot.session->Built());
   slot.pinned = !bind.pinned_revision().empty();
   TRY(CheckRevision(*slot.pose_space, bind.pinned_revision()));
@@ -142,6 +145,15 @@ void PlaySlots::Blend(const v1::PlayRequest::Item& item, bool with_weights,
   } else {
     SetError(std::move(frame).error(), result);
   }
+}
+
+bool PlaySlots::MustLoad(const v1::PlayRequest& request) {
+  next_bound_ = nullptr;
+  if (!request.has_bind()) return false;
+  auto session = registry_.Peek(request.bind().session_id());
+  if (!session) return false;
+  next_bound_ = std::move(session).value();
+  return next_bound_ == nullptr;
 }
 
 double PlaySlots::EstimateMicroseconds(const v1::PlayRequest& request) const {

@@ -42,6 +42,10 @@ class PlaySlots {
   // About how long Answer takes, in microseconds.
   double EstimateMicroseconds(const v1::PlayRequest& request) const;
 
+  // True when Answer will wait for a session that is not in memory.  One that is stays there until
+  // the answer.
+  bool MustLoad(const v1::PlayRequest& request);
+
  private:
   struct Slot {
     std::shared_ptr<Session> session;
@@ -49,7 +53,7 @@ class PlaySlots {
     bool pinned = false;
   };
 
-  Result<Slot> Find(const v1::PlayRequest::Bind& bind) const;
+  Result<Slot> Find(const v1::PlayRequest::Bind& bind);
   void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
   Result<void> Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded, const Send& send);
   void Blend(const v1::PlayRequest::Item& item, bool with_weights,
@@ -58,6 +62,7 @@ class PlaySlots {
   const Registry& registry_;
   const Limits limits_;
   std::map<std::uint32_t, Slot> slots_;
+  std::shared_ptr<Session> next_bound_;  // the session of the next message, when it is a bind
 };
 
 }  // namespace posespace

@@ -177,6 +177,7 @@ PlayStream::Next PlayStream::Advance(bool may_work_here) {
   }
   if (!working_ && !waiting_.empty() && queued_bytes_ <= kQueuedBytes) {
     working_ = true;
+    if (slots_.MustLoad(waiting_.front())) return Next::kScheduleLoad;
     const bool brief = slots_.EstimateMicroseconds(waiting_.front()) <= kShortWork;
     return may_work_here && brief ? Next::kWorkHere : Next::kScheduleWork;
   }
@@ -196,6 +197,8 @@ void PlayStream::Do(Next next) {
       return Work();
     case Next::kScheduleWork:
       return transport_.ScheduleWork();
+    case Next::kScheduleLoad:
+      return transport_.ScheduleLoad();
     case Next::kFinish:
       return transport_.Finish(outcome_.value_or(Result<void>()));
   }

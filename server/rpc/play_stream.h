@@ -25,6 +25,8 @@ class PlayTransport {
   virtual void StartWrite(const v1::PlayResponse* message) = 0;
   // Has PlayStream::Work called on a thread that may be busy for long.
   virtual void ScheduleWork() = 0;
+  // The same on a thread that may wait for a disk.
+  virtual void ScheduleLoad() = 0;
   // The last call.  The stream may be deleted once all that was started has come back.
   virtual void Finish(Result<void> outcome) = 0;
 
@@ -76,7 +78,7 @@ class PlayStream {
     std::size_t bytes;
     bool completes = false;  // the last answer to a message that was read
   };
-  enum class Next { kWait, kWorkHere, kScheduleWork, kFinish };
+  enum class Next { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
 
   PlaySlots::Tags Superseded() const;
   void StartDraining(std::chrono::milliseconds stop_sending_in, Clock::time_point now);

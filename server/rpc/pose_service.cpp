@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "drawing/png_file.h"
 #include "rpc/animate_stream.h"
 #include "rpc/call.h"
 #include "rpc/convert.h"
@@ -47,16 +46,16 @@ grpc::ServerUnaryReactor* PoseService::GetTexture(grpc::CallbackServerContext* c
                    "shape '" + request->shape_id() + "' is not in the built pose space",
                    {}};
     }
-    const std::vector<std::uint8_t> png = EncodePng((*drawing)->texture.image);
-    response->mutable_png()->assign(png.begin(), png.end());
+    const auto png = Packed(**drawing).png;
+    response->mutable_png()->assign(png->begin(), png->end());
     ToProto((*drawing)->texture, response->mutable_placement());
     return {};
   });
 }
 
 // Short enough for the thread that took the call.  A request that will be refused is short, too.
-bool PoseService::IsShort(const v1::BlendRequest& request) const {
-  const auto pose_space = Built(request.session_id());
+bool PoseService::IsShort(const Session& session, const v1::BlendRequest& request) const {
+  const auto pose_space = session.Built();
   if (!pose_space || request.queries_size() > registry_.limits().max_queries) return true;
   double sum = 0.0;
   for (const v1::Query& query : request.queries()) {
@@ -68,8 +67,8 @@ bool PoseService::IsShort(const v1::BlendRequest& request) const {
 grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* context,
                                              const v1::BlendRequest* request,
                                              v1::BlendResponse* response) {
-  const auto blend = [=, this]() -> Result<void> {
-    const auto pose_space = TRY(Built(request->session_id()));
+  const auto blend = [=, this](const std::shared_ptr<Session>& session) -> Result<void> {
+    const auto pose_space = TRY(session->Built());
     TRY(CheckRevision(*pose_space, request->revision()));
     TRY(CheckQueryCount(request->queries_size(), registry_.limits().max_queries));
     for (int k = 0; k < request->queries_size(); ++k) {
@@ -80,18 +79,22 @@ grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* contex
     response->set_revision(pose_space->revision());
     return {};
   };
-  return IsShort(*request) ? Reply(context, "Blend", blend)
-                           : ReplyFrom(blend_pool_, context, "Blend", blend);
+  const auto session = registry_.Peek(request->session_id());
+  if (session && *session != nullptr && !IsShort(**session, *request)) {
+    return ReplyFrom(blend_pool_, context, "Blend",
+                     [=, session = *session] { return blend(session); });
+  }
+  return ReplyAbout(request->session_id(), registry_, bulk_pool_, context, "Blend", blend);
 }
 
 grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* PoseService::Play(
     grpc::CallbackServerContext* /*context*/) {
-  return new PlayReactor(registry_, streams_, blend_pool_);
+  return new PlayReactor(registry_, streams_, blend_pool_, bulk_pool_);
 }
 
 grpc::ServerWriteReactor<v1::AnimateResponse>* PoseService::Animate(
     grpc::CallbackServerContext* /*context*/, const v1::AnimateRequest* request) {
-  return new AnimateStream(registry_, streams_, blend_pool_, *request);
+  return new AnimateStream(registry_, streams_, blend_pool_, bulk_pool_, *request);
 }
 
 grpc::ServerWriteReactor<v1::RenderResponse>* PoseService::Render(

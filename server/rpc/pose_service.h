@@ -40,7 +40,7 @@ class PoseService final : public v1::PoseService::CallbackService {
 
  private:
   Result<std::shared_ptr<const PoseSpace>> Built(const std::string& session_id) const;
-  bool IsShort(const v1::BlendRequest& request) const;
+  bool IsShort(const Session& session, const v1::BlendRequest& request) const;
 
   Registry& registry_;
   LiveStreams& streams_;

@@ -20,20 +20,21 @@ RenderStream::RenderStream(const Registry& registry, LiveStreams& streams, Compu
     : SequenceStream(Call("Render"), streams, pool, kAhead, kTurn),
       budget_(budget),
       request_(request) {
-  if (auto begun = Guarded([&] { return Begin(registry); }); !begun) Close(std::move(begun));
+  BeginWith(request_.session_id(), registry, pool,
+            [this, &limits = registry.limits()](const std::shared_ptr<Session>& session) {
+              return Begin(*session, limits);
+            });
   Release();
 }
 
-Result<void> RenderStream::Begin(const Registry& registry) {
-  const Limits& limits = registry.limits();
-  const auto session = TRY(registry.Find(request_.session_id()));
+Result<void> RenderStream::Begin(const Session& session, const Limits& limits) {
   if (request_.has_animation() && request_.queries_size() > 0) {
     return ErrorAt(ErrorCode::kInvalidOption, "animation", "is given beside queries");
   }
   if (!request_.has_animation()) {
     TRY(CheckQueryCount(request_.queries_size(), limits.max_queries));
   }
-  pose_space_ = TRY(session->Built());
+  pose_space_ = TRY(session.Built());
   view_ = TRY(ViewFromProto(request_, *pose_space_, limits.max_render_side));
   if (request_.has_animation()) {
     frames_ = TRY(AnimationFrames::From(request_.animation(), limits.max_render_frames));

@@ -21,7 +21,7 @@ class RenderStream final : public SequenceStream<v1::RenderResponse> {
                PictureBudget& budget, const v1::RenderRequest& request);
 
  private:
-  Result<void> Begin(const Registry& registry);
+  Result<void> Begin(const Session& session, const Limits& limits);
   Result<v1::RenderResponse> Make(int index) override;
   void OnEnd() override;
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int kMetadataBytes = 8 << 10;
 constexpr std::size_t kWaitingBlends = 4'096;  // a few seconds of work
 constexpr std::size_t kWaitingUploads = 64;    // each may hold a whole request
-constexpr int kBulkNiceness = 5;               // pictures and uploads give way to frames
+constexpr int kBulkNiceness = 5;               // pictures, uploads and loads give way to frames
 constexpr int kMatchingNiceness = 19;          // as long as builds, and as patient
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
@@ -47,20 +47,23 @@ void EnableReflection() {
 
 }  // namespace
 
-Server::Server(const Limits& limits)
-    : registry_(limits),
-      streams_(limits.max_streams),
+Server::Server(std::unique_ptr<Registry> registry)
+    : registry_(std::move(registry)),
+      streams_(registry_->limits().max_streams),
       blend_pool_(Cores(), kWaitingBlends, 0),
       bulk_pool_(Cores(), kWaitingUploads, kBulkNiceness),
-      matching_pool_(std::max(1, limits.concurrent_builds),
-                     static_cast<std::size_t>(limits.build_queue), kMatchingNiceness),
-      session_service_(registry_, streams_, bulk_pool_, matching_pool_),
-      pose_service_(registry_, streams_, blend_pool_, bulk_pool_) {}
+      matching_pool_(std::max(1, registry_->limits().concurrent_builds),
+                     static_cast<std::size_t>(registry_->limits().build_queue), kMatchingNiceness),
+      session_service_(*registry_, streams_, bulk_pool_, matching_pool_),
+      pose_service_(*registry_, streams_, blend_pool_, bulk_pool_) {}
 
 Server::~Server() { Shutdown(std::chrono::milliseconds(0)); }
 
-Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const Limits& limits) {
-  std::unique_ptr<Server> service(new Server(limits));
+Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const Limits& limits,
+                                              std::shared_ptr<Store> store) {
+  auto registry = store == nullptr ? std::make_unique<Registry>(limits)
+                                   : TRY(Registry::Open(limits, std::move(store)));
+  std::unique_ptr<Server> service(new Server(std::move(registry)));
   grpc::EnableDefaultHealthCheckService(true);
   EnableReflection();
   grpc::ServerBuilder builder;
@@ -92,7 +95,7 @@ Result<std::unique_ptr<Server>> Server::Start(const std::string& listen, const L
 void Server::BeginDrain(std::chrono::milliseconds grace) {
   server_->GetHealthCheckService()->Shutdown();
   streams_.Drain(grace);
-  registry_.build_pool().CancelAll();
+  registry_->build_pool().CancelAll();
 }
 
 void Server::Shutdown(std::chrono::milliseconds patience) {

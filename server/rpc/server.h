@@ -17,6 +17,7 @@
 #include "rpc/session_service.h"
 #include "session/limits.h"
 #include "session/registry.h"
+#include "store/store.h"
 
 namespace posespace {
 
@@ -24,9 +25,10 @@ namespace posespace {
 // end, Shutdown.
 class Server {
  public:
-  // `listen` is ADDR:PORT, port 0 for any, or unix:PATH.  Fails with kInvalidOption when nothing
-  // can listen there.
-  static Result<std::unique_ptr<Server>> Start(const std::string& listen, const Limits& limits);
+  // `listen` is ADDR:PORT, port 0 for any, or unix:PATH; without a store sessions end with the
+  // server.  Fails with kInvalidOption when nothing can listen there, and as Registry::Open.
+  static Result<std::unique_ptr<Server>> Start(const std::string& listen, const Limits& limits,
+                                               std::shared_ptr<Store> store = nullptr);
 
   ~Server();
   Server(const Server&) = delete;
@@ -44,11 +46,11 @@ class Server {
   void Shutdown(std::chrono::milliseconds patience);
 
  private:
-  explicit Server(const Limits& limits);
+  explicit Server(std::unique_ptr<Registry> registry);
 
   // In the order in which they may be destroyed from the last to the first: services use the pools,
   // streams and registry above them.
-  Registry registry_;
+  const std::unique_ptr<Registry> registry_;
   LiveStreams streams_;
   ComputePool blend_pool_;
   ComputePool bulk_pool_;

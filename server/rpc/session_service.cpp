@@ -27,7 +27,7 @@ Result<int> PageSize(int asked) {
 grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerContext* context,
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
-  return Reply(context, "CreateSession", [&]() -> Result<void> {
+  return ReplyFrom(pool_, context, "CreateSession", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Create({request->session_id(),
                                                request->display_name(),
                                                {request->labels().begin(), request->labels().end()},
@@ -40,11 +40,11 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext* context,
                                                      const v1::GetSessionRequest* request,
                                                      v1::GetSessionResponse* response) {
-  return Reply(context, "GetSession", [&]() -> Result<void> {
-    const auto session = TRY(registry_.Find(request->session_id()));
+  const auto show = [=](const std::shared_ptr<Session>& session) -> Result<void> {
     ToProto(session->View(), response->mutable_session());
     return {};
-  });
+  };
+  return ReplyAbout(request->session_id(), registry_, pool_, context, "GetSession", show);
 }
 
 grpc::ServerUnaryReactor* SessionService::ListSessions(grpc::CallbackServerContext* context,
@@ -52,8 +52,8 @@ grpc::ServerUnaryReactor* SessionService::ListSessions(grpc::CallbackServerConte
                                                        v1::ListSessionsResponse* response) {
   return ReplyFrom(pool_, context, "ListSessions", [=, this]() -> Result<void> {
     const int count = TRY(PageSize(request->page_size()));
-    auto page = registry_.List(count, request->page_token());
-    for (const auto& session : page.sessions) ToProto(session->View(), response->add_sessions());
+    auto page = TRY(registry_.List(count, request->page_token()));
+    for (const SessionView& view : page.sessions) ToProto(view, response->add_sessions());
     response->set_next_page_token(std::move(page.next_token));
     return {};
   });
@@ -62,7 +62,7 @@ grpc::ServerUnaryReactor* SessionService::ListSessions(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* SessionService::DeleteSession(grpc::CallbackServerContext* context,
                                                         const v1::DeleteSessionRequest* request,
                                                         v1::DeleteSessionResponse* /*response*/) {
-  return Reply(context, "DeleteSession", [&]() -> Result<void> {
+  return ReplyFrom(pool_, context, "DeleteSession", [=, this]() -> Result<void> {
     auto deleted = registry_.Delete(request->session_id(), request->etag());
     const bool missing = !deleted && deleted.error().code == ErrorCode::kSessionNotFound;
     if (missing && request->allow_missing()) return {};
@@ -80,6 +80,7 @@ grpc::ServerUnaryReactor* SessionService::PutShape(grpc::CallbackServerContext* 
                                                request->replace(), request->flip()));
     ToProto(*drawing, response->mutable_shape());
     response->set_etag(session->View().etag);
+    registry_.Trim();
     return {};
   });
 }
@@ -87,11 +88,11 @@ grpc::ServerUnaryReactor* SessionService::PutShape(grpc::CallbackServerContext* 
 grpc::ServerUnaryReactor* SessionService::GetShape(grpc::CallbackServerContext* context,
                                                    const v1::GetShapeRequest* request,
                                                    v1::GetShapeResponse* response) {
-  return Reply(context, "GetShape", [&]() -> Result<void> {
-    const auto session = TRY(registry_.Find(request->session_id()));
+  const auto show = [=](const std::shared_ptr<Session>& session) -> Result<void> {
     ToProto(*TRY(session->FindShape(request->shape_id())), response->mutable_shape());
     return {};
-  });
+  };
+  return ReplyAbout(request->session_id(), registry_, pool_, context, "GetShape", show);
 }
 
 grpc::ServerUnaryReactor* SessionService::ListShapes(grpc::CallbackServerContext* context,
@@ -154,26 +155,27 @@ grpc::ServerUnaryReactor* SessionService::StartBuild(grpc::CallbackServerContext
     const BuildStatus status = TRY(session->StartBuild(build, registry_.build_pool()));
     ToProto(status, response->mutable_build());
     response->set_attached(status.attached);
+    registry_.Trim();
     return {};
   });
 }
 
 grpc::ServerWriteReactor<v1::WatchBuildResponse>* SessionService::WatchBuild(
     grpc::CallbackServerContext* /*context*/, const v1::WatchBuildRequest* request) {
-  return new BuildWatch(registry_, streams_, *request);
+  return new BuildWatch(registry_, streams_, pool_, *request);
 }
 
 grpc::ServerUnaryReactor* SessionService::CancelBuild(grpc::CallbackServerContext* context,
                                                       const v1::CancelBuildRequest* request,
                                                       v1::CancelBuildResponse* response) {
-  return Reply(context, "CancelBuild", [&]() -> Result<void> {
-    const auto session = TRY(registry_.Find(request->session_id()));
+  const auto cancel = [=](const std::shared_ptr<Session>& session) -> Result<void> {
     if (const auto job = session->LatestBuild()) {
       if (request->build_id().empty() || request->build_id() == job->Status().id) job->Cancel();
       ToProto(job->Status(), response->mutable_build());
     }
     return {};
-  });
+  };
+  return ReplyAbout(request->session_id(), registry_, pool_, context, "CancelBuild", cancel);
 }
 
 }  // namespace posespace

@@ -10,8 +10,8 @@
 namespace posespace {
 
 // Authoring calls; what each does is said in session_service.proto.  Each handler translates,
-// calls, translates; those that decode, trace, check or copy much do so on `pool`, those that match
-// on `matching`.
+// calls, translates; those that decode, trace, check, copy much or wait for the store do so on
+// `pool`, those that match on `matching`.
 class SessionService final : public v1::SessionService::CallbackService {
  public:
   SessionService(Registry& registry, LiveStreams& streams, ComputePool& pool, ComputePool& matching)

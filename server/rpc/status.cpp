@@ -84,7 +84,10 @@ grpc::StatusCode StatusCodeOf(ErrorCode code) {
     case ErrorCode::kComputeQueueFull:
       return grpc::StatusCode::RESOURCE_EXHAUSTED;
     case ErrorCode::kDraining:
+    case ErrorCode::kStoreUnavailable:
       return grpc::StatusCode::UNAVAILABLE;
+    case ErrorCode::kSnapshotCorrupt:
+      return grpc::StatusCode::DATA_LOSS;
     case ErrorCode::kInternal:
       return grpc::StatusCode::INTERNAL;
   }

@@ -7,11 +7,15 @@
 
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "geometry/result.h"
 #include "rpc/call.h"
+#include "rpc/compute_pool.h"
+#include "session/registry.h"
 
 namespace posespace {
 
@@ -68,6 +72,27 @@ class StreamWriter : public grpc::ServerWriteReactor<Response> {
   }
 
  protected:
+  // Sets the call up by begin(session), which closes it with its error: at once when the session is
+  // in memory, else on a pool, which loads it.
+  template <typename Begin>
+  void BeginWith(const std::string& session_id, const Registry& registry, ComputePool& pool,
+                 Begin begin) {
+    const auto run = [this, begin](Result<std::shared_ptr<Session>> session) {
+      auto begun = Guarded([&]() -> Result<void> { return begin(TRY(std::move(session))); });
+      if (!begun) Close(std::move(begun));
+    };
+    auto session = registry.Peek(session_id);
+    if (!session || *session != nullptr) return run(std::move(session));
+    Hold();
+    const bool posted = pool.TryPost([this, run, &session_id, &registry] {
+      run(Guarded([&] { return registry.Find(session_id); }));
+      Release();
+    });
+    if (posted) return;
+    Close(Error{ErrorCode::kComputeQueueFull, "too much work is waiting; try again later", {}});
+    Release();
+  }
+
   // A message has been written and `waiting` more are queued; the call is held meanwhile.
   virtual void OnWritten(std::size_t /*waiting*/) {}
 

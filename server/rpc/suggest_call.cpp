@@ -11,16 +11,17 @@ namespace posespace {
 SuggestCall::SuggestCall(const Registry& registry, LiveStreams& streams, ComputePool& pool,
                          const v1::SuggestCorrespondencesRequest& request,
                          v1::SuggestCorrespondencesResponse& response)
-    : streams_(streams),
+    : registry_(registry),
+      streams_(streams),
       request_(request),
       response_(response),
       time_limit_(registry.limits().build_timeout) {
-  auto begun = Guarded([&] { return Begin(registry, pool); });
+  auto begun = Guarded([&] { return Begin(pool); });
   if (!begun) Finish(call_.End(std::move(begun)));
 }
 
-Result<void> SuggestCall::Begin(const Registry& registry, ComputePool& pool) {
-  session_ = TRY(registry.Find(request_.session_id()));
+Result<void> SuggestCall::Begin(ComputePool& pool) {
+  session_ = TRY(registry_.Peek(request_.session_id()));
   TRY(streams_.Add(this));
   added_ = true;
   if (pool.TryPost([this] { Work(); })) return {};
@@ -36,6 +37,7 @@ void SuggestCall::Work() {
 Result<void> SuggestCall::Suggest() {
   auto suggestion = [&]() -> Result<Suggestion> {
     const int samples = TRY(SamplesFromProto(request_));
+    if (session_ == nullptr) session_ = TRY(registry_.Find(request_.session_id()));
     return session_->Suggest(samples, &progress_);
   }();
   if (suggestion) {

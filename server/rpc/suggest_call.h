@@ -30,7 +30,7 @@ class SuggestCall final : public grpc::ServerUnaryReactor, private LiveStream {
  private:
   using Clock = std::chrono::steady_clock;
 
-  Result<void> Begin(const Registry& registry, ComputePool& pool);
+  Result<void> Begin(ComputePool& pool);
   void Work();
   Result<void> Suggest();
   void StopInTime();
@@ -42,12 +42,13 @@ class SuggestCall final : public grpc::ServerUnaryReactor, private LiveStream {
   void Drain(std::chrono::milliseconds grace) override { drain_by_ = Clock::now() + grace; }
 
   const Call call_{"SuggestCorrespondences"};
+  const Registry& registry_;
   LiveStreams& streams_;
   const v1::SuggestCorrespondencesRequest& request_;
   v1::SuggestCorrespondencesResponse& response_;
   const std::chrono::seconds time_limit_;
-  std::shared_ptr<Session> session_;
-  bool added_ = false;  // to streams_
+  std::shared_ptr<Session> session_;  // null until the work begins for one that must be loaded
+  bool added_ = false;                // to streams_
   Progress progress_{[this](std::string_view, double) { StopInTime(); }};
   Clock::time_point overdue_ = Clock::time_point::max();  // used by the work, set when it begins
   std::atomic<Clock::time_point> drain_by_{Clock::time_point::max()};

@@ -140,6 +140,8 @@ struct BuildJob::State {
     }();
     const auto set = [&ended](Result<std::shared_ptr<const PoseSpace>> outcome) {
       ended.pose_space = outcome ? *outcome : nullptr;
+      ended.summary =
+          outcome ? std::make_shared<const BuildSummary>((*outcome)->Summary()) : nullptr;
       ended.error.reset();
       ended.state = BuildState::kSucceeded;
       if (outcome) {
@@ -157,7 +159,9 @@ struct BuildJob::State {
       return std::exchange(done, nullptr);
     }();
     try {
-      if (tell) tell(ended);
+      if (tell) {
+        if (Result<void> taken = tell(ended); !taken) set(std::move(taken).error());
+      }
     } catch (const std::exception& exception) {
       set(Error{ErrorCode::kInternal,
                 std::string("the built pose space could not be used: ") + exception.what(),
@@ -186,6 +190,7 @@ BuildJob::BuildJob(std::string id, std::shared_ptr<const PoseSpace> built,
   state_->phase = State::Phase::kEnded;
   state_->status.state = BuildState::kSucceeded;
   state_->status.fraction = 1.0;
+  state_->status.summary = std::make_shared<const BuildSummary>(built->Summary());
   state_->status.pose_space = std::move(built);
 }
 

@@ -25,7 +25,8 @@ struct BuildStatus {
   std::string stage;
   double fraction = 0.0;                        // never falls; 1 when succeeded
   std::int64_t sequence = 0;                    // >= 1; grows with every change
-  std::shared_ptr<const PoseSpace> pose_space;  // when succeeded
+  std::shared_ptr<const PoseSpace> pose_space;  // when succeeded, of a session in memory
+  std::shared_ptr<const BuildSummary> summary;  // when succeeded
   std::optional<Error> error;                   // when failed or cancelled
   bool attached = false;  // of StartBuild's answer: the build was there already
 
@@ -41,7 +42,8 @@ class BuildJob {
  public:
   // Called once when the build ended, before anybody else hears of it, holding no lock: on the
   // thread that builds, or, for a job cancelled while it is queued, on the thread that cancels.
-  using Done = std::function<void(const BuildStatus&)>;
+  // A build whose result it cannot take ends as failed with its error.
+  using Done = std::function<Result<void>(const BuildStatus&)>;
 
   // A build of the same mesh as `reuse`, if any, only makes its weights anew.
   BuildJob(std::string id, BuildInputs inputs, Done done,

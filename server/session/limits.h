@@ -22,6 +22,7 @@ struct Limits {
   int max_animation_frames = 100'000;            // of one Animate
   int max_render_frames = 10'000;                // of one Render along a path
   // Affect how much runs at once.
+  std::int64_t max_memory_bytes = std::int64_t{2} << 30;  // of sessions that nobody uses just now
   int max_sessions = 10'000;
   int max_streams = 10'000;
   std::int64_t max_picture_bytes = 512 << 20;  // of all rendered pictures not yet read

@@ -2,11 +2,18 @@
 #include "session/pose_space.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <mutex>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "drawing/decode.h"
+#include "drawing/png_file.h"
+#include "geometry/polygon.h"
 #include "interpolation/texture_weights.h"
 #include "session/placements.h"
 
@@ -99,6 +106,49 @@ Result<Eigen::VectorXd> CheckedWeights(const Eigen::VectorXd& weights, int num_p
   return Eigen::VectorXd(weights / sum);
 }
 
+bool IsUpright(const std::vector<int>& turns) {
+  return std::all_of(turns.begin(), turns.end(), [](int turn) { return turn == 0; });
+}
+
+// Why parts do not fit together, or null: everything that later steps rely on but do not check.
+const char* Misfit(const PoseSpace::Parts& parts) {
+  const CompatibleMesh& mesh = parts.mesh;
+  const std::size_t num_poses = parts.drawings.size();
+  const int num_vertices = mesh.num_vertices();
+  const auto is_vertex = [num_vertices](int v) { return v >= 0 && v < num_vertices; };
+  if (num_poses == 0 || mesh.poses.size() != num_poses || parts.turns.size() != num_poses ||
+      parts.mapping.confidence.size() != num_poses || parts.report.confidence.size() != num_poses) {
+    return "its lists differ in length";
+  }
+  if (num_vertices < 3 || mesh.num_triangles() == 0) return "its mesh is empty";
+  for (const Points& pose : mesh.poses) {
+    if (pose.rows() != num_vertices || !pose.allFinite()) return "a pose is not of its mesh";
+  }
+  std::vector<bool> used(num_vertices, false);
+  for (const std::int32_t v : mesh.triangles.reshaped()) {
+    if (!is_vertex(v)) return "a triangle has no such vertex";
+    used[v] = true;
+  }
+  if (!std::all_of(used.begin(), used.end(), [](bool each) { return each; })) {
+    return "a vertex has no triangle";
+  }
+  if (mesh.boundary.empty()) return "its mesh has no boundary";
+  for (const std::vector<int>& loop : mesh.boundary) {
+    if (loop.size() < 3 || !std::all_of(loop.begin(), loop.end(), is_vertex)) {
+      return "a boundary loop is none";
+    }
+  }
+  if (!std::all_of(mesh.landmarks.begin(), mesh.landmarks.end(), is_vertex)) {
+    return "a landmark has no such vertex";
+  }
+  constexpr int kMostTurns = 1'000;  // poses wind around each other once or twice
+  for (const int turns : parts.turns) {
+    if (std::abs(turns) > kMostTurns) return "a pose turns too often";
+  }
+  if (parts.reach.rows() != 2 || !parts.reach.allFinite()) return "its box is none";
+  return nullptr;
+}
+
 struct Box {
   Point low, high;
 };
@@ -142,6 +192,36 @@ Box ReachOf(const CompatibleMesh& mesh, const RigidBlend& blend, const Points& p
 
 }  // namespace
 
+std::int64_t MemoryBytesOf(const Drawing& drawing) {
+  const Outline& outline = drawing.outline;
+  std::size_t numbers = outline.outer.size() + outline.colours.size();
+  for (const Points& hole : outline.holes) numbers += hole.size();
+  const std::size_t packed = drawing.png ? drawing.png->size() : 0;
+  return static_cast<std::int64_t>(sizeof drawing + numbers * sizeof(double) + packed +
+                                   drawing.texture.image.rgba.size());
+}
+
+Drawing Packed(Drawing drawing) {
+  if (drawing.texture.image.rgba.empty()) return drawing;
+  auto png = EncodePng(drawing.texture.image);
+  if (png.empty()) throw std::runtime_error("a picture could not be packed");
+  drawing.png = std::make_shared<const std::vector<std::uint8_t>>(std::move(png));
+  drawing.texture.image.rgba = {};
+  return drawing;
+}
+
+Texture TextureOf(const Drawing& drawing) {
+  Texture texture = drawing.texture;
+  if (drawing.png == nullptr) return texture;
+  const std::int64_t pixels = std::int64_t{texture.image.width} * texture.image.height;
+  auto image = DecodeImage(*drawing.png, {.max_pixels = pixels});
+  if (!image || image->width != texture.image.width || image->height != texture.image.height) {
+    throw std::runtime_error("the packed pixels of '" + drawing.id + "' are damaged");
+  }
+  texture.image = std::move(image).value();
+  return texture;
+}
+
 std::vector<MatchingShape> MatchingShapesOf(
     std::span<const std::shared_ptr<const Drawing>> drawings) {
   std::vector<MatchingShape> shapes;
@@ -159,7 +239,21 @@ struct PoseSpace::Body {
   MappingReport report;  // of mapping alone
   std::vector<std::string> warnings;
   RigidBlend blend;  // without turns
-  std::vector<RenderTexture> textures;
+
+  // Made for the first picture: most pose spaces are only ever blended, and pixels are large.
+  const std::vector<RenderTexture>& Textures() const {
+    std::call_once(textures_made, [this] {
+      std::vector<RenderTexture> made;
+      for (const auto& drawing : drawings) made.emplace_back(TextureOf(*drawing));
+      textures = std::move(made);
+      have_textures = true;
+    });
+    return textures;
+  }
+
+  mutable std::once_flag textures_made = {};
+  mutable std::vector<RenderTexture> textures = {};
+  mutable std::atomic<bool> have_textures = false;
 };
 
 struct PoseSpace::State {
@@ -187,15 +281,9 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inp
 
   if (progress != nullptr) progress->EnterStage("weights", kMappingShare, 1.0);
   auto blend = TRY(RigidBlend::Prepare(mapping.mesh));
-  std::vector<RenderTexture> textures;
-  textures.reserve(inputs.drawings.size());
-  for (const auto& drawing : inputs.drawings) {
-    if (IsCancelled(progress)) return Cancelled();
-    textures.emplace_back(drawing->texture);
-  }
-  const auto body = std::make_shared<const Body>(
-      Body{inputs.drawings, MeshDigest(inputs), std::move(mapping.mesh), std::move(mapping.report),
-           std::move(warnings), std::move(blend), std::move(textures)});
+  const std::shared_ptr<const Body> body(
+      new Body{inputs.drawings, MeshDigest(inputs), std::move(mapping.mesh),
+               std::move(mapping.report), std::move(warnings), std::move(blend)});
   return Place(body, inputs.placements, progress);
 }
 
@@ -214,8 +302,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Place(const std::shared_ptr<
   if (IsCancelled(progress)) return Cancelled();
 
   std::vector<int> turns = TurnsAlongPlacements(body->blend.mean_rotations(), placements);
-  const bool upright = std::all_of(turns.begin(), turns.end(), [](int t) { return t == 0; });
-  auto blend = upright ? body->blend : TRY(RigidBlend::Prepare(body->mesh, turns));
+  auto blend = IsUpright(turns) ? body->blend : TRY(RigidBlend::Prepare(body->mesh, turns));
 
   const Box reach = ReachOf(body->mesh, blend, placements, progress);
   if (IsCancelled(progress)) return Cancelled();
@@ -225,6 +312,42 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Place(const std::shared_ptr<
   auto state = std::make_shared<const State>(
       State{body, placements, RevisionDigest(body->mesh_digest, placements), std::move(turns),
             std::move(blend), std::move(weights), std::move(report), reach});
+  return std::shared_ptr<const PoseSpace>(new PoseSpace(std::move(state)));
+}
+
+PoseSpace::Parts PoseSpace::ToParts() const {
+  const Body& body = *state_->body;
+  Points reach(2, 2);
+  reach << state_->reach.low.transpose(), state_->reach.high.transpose();
+  return {body.drawings,  body.mesh_digest,   body.mesh,     body.report,
+          body.warnings,  state_->placements, state_->turns, state_->weights.fit(),
+          state_->report, std::move(reach)};
+}
+
+Result<std::shared_ptr<const PoseSpace>> PoseSpace::FromParts(Parts parts) {
+  const auto refuse = [](const std::string& why) {
+    return Error{ErrorCode::kSnapshotCorrupt, "a stored pose space makes no sense: " + why, {}};
+  };
+  if (const char* const why = Misfit(parts)) return refuse(why);
+  if (FindDefect(parts.mesh)) return refuse("its mesh is not valid in every drawing");
+  if (const auto placed = CheckPlacements(IdsOf(parts.drawings), parts.placements); !placed) {
+    return refuse(placed.error().message);
+  }
+  auto weights = PoseWeights::FromFit(parts.placements, std::move(parts.weights));
+  if (!weights) return refuse(weights.error().message);
+  auto plain = RigidBlend::Prepare(parts.mesh);
+  if (!plain) return refuse(plain.error().message);
+  auto turned = IsUpright(parts.turns) ? plain : RigidBlend::Prepare(parts.mesh, parts.turns);
+  if (!turned) return refuse(turned.error().message);
+
+  const std::shared_ptr<const Body> body(
+      new Body{std::move(parts.drawings), std::move(parts.mesh_digest), std::move(parts.mesh),
+               std::move(parts.mapping), std::move(parts.warnings), std::move(plain).value()});
+  std::string revision = RevisionDigest(body->mesh_digest, parts.placements);
+  auto state = std::make_shared<const State>(
+      State{body, std::move(parts.placements), std::move(revision), std::move(parts.turns),
+            std::move(turned).value(), std::move(weights).value(), std::move(parts.report),
+            Box{parts.reach.row(0).transpose(), parts.reach.row(1).transpose()}});
   return std::shared_ptr<const PoseSpace>(new PoseSpace(std::move(state)));
 }
 
@@ -265,9 +388,10 @@ Image PoseSpace::Render(const Frame& frame, const View& view) const {
     blank.rgba.resize(4 * static_cast<std::size_t>(view.width) * view.height);
     return blank;
   }
+  const std::vector<RenderTexture>& textures = state_->body->Textures();
   std::vector<RenderLayer> layers;
   for (int i = 0; i < mesh().num_poses(); ++i) {
-    layers.push_back({&mesh().poses[i], &state_->body->textures[i], frame.texture_weights[i]});
+    layers.push_back({&mesh().poses[i], &textures[i], frame.texture_weights[i]});
   }
   return posespace::Render(mesh().triangles, frame.vertices, layers, view);
 }
@@ -288,5 +412,26 @@ const std::vector<std::shared_ptr<const Drawing>>& PoseSpace::drawings() const {
 const std::vector<int>& PoseSpace::turns() const { return state_->turns; }
 const MappingReport& PoseSpace::report() const { return state_->report; }
 const std::vector<std::string>& PoseSpace::warnings() const { return state_->body->warnings; }
+
+std::int64_t PoseSpace::MemoryBytes() const {
+  // Two blends, each with rotations and stretches for two rest shapes, and the factors of both.
+  constexpr std::int64_t kPerTriangleAndPose = 2 * 2 * 4 * sizeof(double);
+  constexpr std::int64_t kPerVertex = 2 * 2 * 40 * sizeof(double);
+  constexpr std::int64_t kPerTexel = 21;
+  std::int64_t bytes =
+      std::int64_t{mesh().num_triangles()} * mesh().num_poses() * kPerTriangleAndPose +
+      mesh().num_vertices() * kPerVertex + state_->weights.MemoryBytes();
+  if (!state_->body->have_textures) return bytes;
+  for (const auto& drawing : drawings()) {
+    const Image& image = drawing->texture.image;
+    bytes += kPerTexel * image.width * image.height;
+  }
+  return bytes;
+}
+
+BuildSummary PoseSpace::Summary() const {
+  return {revision(), mesh().num_vertices(), mesh().num_triangles(), IdsOf(drawings()), report(),
+          warnings()};
+}
 
 }  // namespace posespace

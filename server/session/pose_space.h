@@ -27,8 +27,21 @@ struct Drawing {
   double width = 0.0;    // drawing pixels
   double height = 0.0;
   Outline outline;
+  // Either with its pixels, or, once kept by a session, with their number alone and the pixels as
+  // a PNG file beside it: a fiftieth of the memory.  TextureOf has them either way.
   Texture texture;
+  std::shared_ptr<const std::vector<std::uint8_t>> png;
 };
+
+// About how much memory a drawing takes.
+std::int64_t MemoryBytesOf(const Drawing& drawing);
+
+// The same drawing with its pixels packed; empty pictures stay as they are.
+Drawing Packed(Drawing drawing);
+
+// The texture with its pixels.  Throws std::runtime_error when packed pixels are damaged, which
+// their reader has ruled out by a checksum.
+Texture TextureOf(const Drawing& drawing);
 
 // Everything that decides what is built.  Immutable value.
 struct BuildInputs {
@@ -48,6 +61,16 @@ std::string RevisionDigest(const std::string& mesh_digest, const Points& placeme
 // What boundary_matching.h sees of drawings, in their order and under their ids.
 std::vector<MatchingShape> MatchingShapesOf(
     std::span<const std::shared_ptr<const Drawing>> drawings);
+
+// What a build came to, in numbers and words: small enough to keep beside every session.
+struct BuildSummary {
+  std::string revision;
+  int vertices = 0;
+  int triangles = 0;
+  std::vector<std::string> shape_ids;  // in the order of MappingReport::confidence
+  MappingReport mapping;
+  std::vector<std::string> warnings;
+};
 
 // What to blend, and how.
 struct Query {
@@ -82,13 +105,33 @@ class PoseSpace {
   Result<std::shared_ptr<const PoseSpace>> WithPlacements(const Points& placements,
                                                           Progress* progress = nullptr) const;
 
+  // What is slow to make, as plain values, and the pose space made of it again: it blends as the
+  // first one did, to the last bit.
+  struct Parts {
+    std::vector<std::shared_ptr<const Drawing>> drawings;
+    std::string mesh_digest;
+    CompatibleMesh mesh;
+    MappingReport mapping;  // of the mesh alone
+    std::vector<std::string> warnings;
+    Points placements;
+    std::vector<int> turns;
+    LatticeData weights;  // PoseWeights::fit
+    MappingReport report;
+    Points reach;  // 2 x 2: the corners of what blends take up
+  };
+  Parts ToParts() const;
+  // Checks that they fit together: the mesh is valid in every pose, all numbers are finite, indices
+  // in range.  Fails with kSnapshotCorrupt.
+  static Result<std::shared_ptr<const PoseSpace>> FromParts(Parts parts);
+
   // Explicit weights are divided by their sum, so a frame's weights sum to 1.
   // Fails  kPoseNotFinite, kWeightsNotFinite, kWeightsCountMismatch, kWeightsSumNotOne (1e-3),
   //        kInvalidOption (refits, sigma, weights beyond 1e6); the field, such as "weights", is the
   //        query's.
   Result<Frame> Blend(const Query& query, bool weights_only = false) const;
 
-  // The blend of a query as a picture; transparent when the frame has no vertices.
+  // The blend of a query as a picture; transparent when the frame has no vertices.  The first
+  // picture makes the textures ready and takes longer, up to some 50 ms a megapixel.
   // Requires  a frame of this pose space; a view whose size is bounded by the caller.
   Image Render(const Frame& frame, const View& view) const;
 
@@ -105,6 +148,10 @@ class PoseSpace {
   const std::vector<int>& turns() const;
   const MappingReport& report() const;
   const std::vector<std::string>& warnings() const;  // what a person should know of the build
+  BuildSummary Summary() const;
+
+  // About how much memory it takes, drawings aside; more once it has drawn a picture.
+  std::int64_t MemoryBytes() const;
 
  private:
   struct Body;

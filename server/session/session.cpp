@@ -30,6 +30,15 @@ void FlipMarks(std::vector<Correspondence>& tuples, const std::string& shape_id,
   }
 }
 
+std::int64_t PixelsOfOthers(const std::vector<std::shared_ptr<const Drawing>>& drawings,
+                            const std::string& shape_id) {
+  std::int64_t pixels = 0;
+  for (const auto& other : drawings) {
+    if (other->id != shape_id) pixels += PixelsOf(*other);
+  }
+  return pixels;
+}
+
 // Checks that each tuple marks something, and only drawings that are there.
 Result<void> CheckTuples(const std::vector<Correspondence>& tuples,
                          const std::vector<std::string>& ids) {
@@ -72,18 +81,25 @@ SessionView Session::View() const {
   std::shared_ptr<BuildJob> latest;
   {
     const std::lock_guard lock(state_->mutex);
-    view.shape_ids = state_->ShapeIds();
-    view.correspondences = state_->correspondences;
-    view.placements = PlacementsOrDefault(state_->placements, view.shape_ids);
-    view.placements_are_default = state_->placements.empty();
+    const State::Content& content = state_->content;
+    view.shape_ids = content.ShapeIds();
+    view.correspondences = content.correspondences;
+    view.placements = PlacementsOrDefault(content.placements, view.shape_ids);
+    view.placements_are_default = content.placements.empty();
     view.etag = state_->Etag();
-    view.updated = state_->updated;
+    view.updated = content.updated;
     const std::lock_guard read(state_->reading);
     if (state_->built != nullptr) view.revision = state_->built->revision();
     latest = state_->latest;
   }
   if (latest != nullptr) view.build = latest->Status();
   return view;
+}
+
+std::int64_t Session::MemoryBytes() const {
+  std::int64_t bytes = state_->drawing_bytes;
+  if (const auto built = state_->BuiltOrNull()) bytes += built->MemoryBytes();
+  return bytes;
 }
 
 std::string Session::etag() const {
@@ -97,16 +113,18 @@ Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shap
   TRY(CheckId("shape", shape_id));
 
   // The drawing that answers the call without any work, if it is there; else whether it may come.
-  const auto precheck = [&](const std::string& digest,
-                            std::ptrdiff_t at) -> Result<std::shared_ptr<const Drawing>> {
+  // Requires `mutex`.
+  const auto precheck = [&](const std::string& digest) -> Result<std::shared_ptr<const Drawing>> {
     TRY(state_->AcceptEdit(""));
-    if (at >= 0 && state_->drawings[at]->digest == digest) return state_->drawings[at];
+    const State::Content& content = state_->content;
+    const std::ptrdiff_t at = content.Find(shape_id);
+    if (at >= 0 && content.drawings[at]->digest == digest) return content.drawings[at];
     if (at >= 0 && !replace) {
       return Error{ErrorCode::kShapeExists,
                    "shape '" + shape_id + "' is there with another drawing; replace overwrites it",
                    {{"shape_id", "is taken by another drawing"}}};
     }
-    if (at < 0 && std::ssize(state_->drawings) >= limits_.max_shapes) {
+    if (at < 0 && std::ssize(content.drawings) >= limits_.max_shapes) {
       return Error{ErrorCode::kTooManyShapes,
                    "session '" + id_ + "' has " + std::to_string(limits_.max_shapes) +
                        " drawings, as many as may be",
@@ -115,76 +133,66 @@ Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shap
     return std::shared_ptr<const Drawing>();
   };
 
-  // Requires the lock.
-  const auto pixels_of_others = [&] {
-    std::int64_t pixels = 0;
-    for (const auto& other : state_->drawings) {
-      if (other->id != shape_id) pixels += PixelsOf(*other);
-    }
-    return pixels;
-  };
-
   const std::string straight = SourceDigest(source), flipped = FlippedDigest(straight);
   const std::string& digest = flip ? flipped : straight;
   std::int64_t pixels_left = limits_.max_session_pixels;
   {
     const std::lock_guard lock(state_->mutex);
-    if (auto known = TRY(precheck(digest, state_->Find(shape_id)))) return known;
-    pixels_left -= pixels_of_others();
+    if (auto known = TRY(precheck(digest))) return known;
+    pixels_left -= PixelsOfOthers(state_->content.drawings, shape_id);
   }
   Drawing read = TRY(ReadDrawing(shape_id, source, limits_, pixels_left));
   const double mirror_sum = MirrorSum(source, read);
   if (flip) read = Flipped(std::move(read), mirror_sum);
-  const auto drawing = std::make_shared<const Drawing>(std::move(read));
+  const auto drawing = std::make_shared<const Drawing>(Packed(std::move(read)));
 
   const std::lock_guard edit(state_->editing);
-  const std::lock_guard lock(state_->mutex);
-  const std::ptrdiff_t at = state_->Find(shape_id);
-  if (auto known = TRY(precheck(digest, at))) return known;
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (auto known = TRY(precheck(digest))) return known;
+  }
+  State::Content next = state_->Current();
   // Others may have come while this one was read; polygons are painted whatever is left.
-  const std::int64_t pixels = PixelsOf(*drawing) + pixels_of_others();
+  const std::int64_t pixels = PixelsOf(*drawing) + PixelsOfOthers(next.drawings, shape_id);
   if (pixels > limits_.max_session_pixels) {
     const std::string message = "shape '" + shape_id + "': with it the session's pictures have " +
                                 std::to_string(pixels) + " pixels, more than the limit of " +
                                 std::to_string(limits_.max_session_pixels);
     return Error{ErrorCode::kImageTooLarge, message, {{"shape_id", message}}};
   }
-  if (at >= 0) {
-    if (state_->drawings[at]->digest == (flip ? straight : flipped)) {
-      FlipMarks(state_->correspondences, shape_id, mirror_sum);
+  if (const std::ptrdiff_t at = next.Find(shape_id); at >= 0) {
+    if (next.drawings[at]->digest == (flip ? straight : flipped)) {
+      FlipMarks(next.correspondences, shape_id, mirror_sum);
     }
-    state_->drawings[at] = drawing;
+    next.drawings[at] = drawing;
   } else {
-    state_->drawings.push_back(drawing);
+    next.drawings.push_back(drawing);
   }
-  state_->Touch();
+  TRY(state_->Commit(std::move(next), state_->CurrentProduct()));
   return drawing;
 }
 
 Result<std::shared_ptr<const Drawing>> Session::FindShape(const std::string& shape_id) const {
   const std::lock_guard lock(state_->mutex);
-  const std::ptrdiff_t at = state_->Find(shape_id);
+  const std::ptrdiff_t at = state_->content.Find(shape_id);
   if (at < 0) return ShapeNotFound(id_, shape_id);
-  return state_->drawings[at];
+  return state_->content.drawings[at];
 }
 
 std::vector<std::shared_ptr<const Drawing>> Session::Shapes() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->drawings;
+  return state_->Current().drawings;
 }
 
 Result<void> Session::DeleteShape(const std::string& shape_id) {
   const std::lock_guard edit(state_->editing);
-  const std::lock_guard lock(state_->mutex);
-  TRY(state_->AcceptEdit(""));
-  const std::ptrdiff_t at = state_->Find(shape_id);
+  State::Content next = TRY(state_->ContentToEdit(""));
+  const std::ptrdiff_t at = next.Find(shape_id);
   if (at < 0) return ShapeNotFound(id_, shape_id);
-  state_->drawings.erase(state_->drawings.begin() + at);
-  state_->placements.erase(shape_id);
-  for (Correspondence& tuple : state_->correspondences) tuple.erase(shape_id);
-  std::erase_if(state_->correspondences, [](const Correspondence& tuple) { return tuple.empty(); });
-  state_->Touch();
-  return {};
+  next.drawings.erase(next.drawings.begin() + at);
+  next.placements.erase(shape_id);
+  for (Correspondence& tuple : next.correspondences) tuple.erase(shape_id);
+  std::erase_if(next.correspondences, [](const Correspondence& tuple) { return tuple.empty(); });
+  return state_->Commit(std::move(next), state_->CurrentProduct());
 }
 
 Result<void> Session::SetCorrespondences(std::vector<Correspondence> tuples,
@@ -196,52 +204,35 @@ Result<void> Session::SetCorrespondences(std::vector<Correspondence> tuples,
                  {{"tuples", "too many"}}};
   }
   const std::lock_guard edit(state_->editing);
-  std::vector<std::shared_ptr<const Drawing>> drawings;
-  {
-    const std::lock_guard lock(state_->mutex);
-    TRY(state_->AcceptEdit(etag));
-    TRY(CheckTuples(tuples, state_->ShapeIds()));
-    drawings = state_->drawings;
-  }
+  State::Content next = TRY(state_->ContentToEdit(etag));
+  TRY(CheckTuples(tuples, next.ShapeIds()));
   if (!tuples.empty()) {
-    TRY(CheckLandmarks(MatchingShapesOf(drawings), LandmarksOf(tuples, drawings)));
+    TRY(CheckLandmarks(MatchingShapesOf(next.drawings), LandmarksOf(tuples, next.drawings)));
   }
-
-  const std::lock_guard lock(state_->mutex);
-  TRY(state_->AcceptEdit(etag));
-  state_->correspondences = std::move(tuples);
-  state_->Touch();
-  return {};
+  next.correspondences = std::move(tuples);
+  return state_->Commit(std::move(next), state_->CurrentProduct());
 }
 
 Result<void> Session::SetPlacements(Placements placements, const std::string& etag) {
   const std::lock_guard edit(state_->editing);
-  auto pose_space = state_->BuiltOrNull();
-  std::optional<Points> places;
-  {
-    const std::lock_guard lock(state_->mutex);
-    TRY(state_->AcceptEdit(etag));
-    const std::vector<std::string> ids = state_->ShapeIds();
-    if (!placements.empty()) {
-      TRY(CheckPlaced(ids, placements));
-      Points all(std::ssize(ids), 2);
-      for (std::size_t i = 0; i < ids.size(); ++i) all.row(i) = placements.at(ids[i]);
-      TRY(CheckPlacements(ids, all));
+  State::Content next = TRY(state_->ContentToEdit(etag));
+  State::Product product = state_->CurrentProduct();
+  const std::vector<std::string> ids = next.ShapeIds();
+  if (!placements.empty()) {
+    TRY(CheckPlaced(ids, placements));
+    Points all(std::ssize(ids), 2);
+    for (std::size_t i = 0; i < ids.size(); ++i) all.row(i) = placements.at(ids[i]);
+    TRY(CheckPlacements(ids, all));
+  }
+  if (auto& pose_space = product.pose_space; pose_space != nullptr) {
+    const auto places = PlacesOf(*pose_space, PlacementsOrDefault(placements, ids));
+    if (places && *places != pose_space->placements()) {
+      pose_space = TRY(pose_space->WithPlacements(*places));
     }
-    if (pose_space != nullptr) places = PlacesOf(*pose_space, PlacementsOrDefault(placements, ids));
   }
-  if (places && *places != pose_space->placements()) {
-    pose_space = TRY(pose_space->WithPlacements(*places));
-  }
-
-  const std::lock_guard lock(state_->mutex);
-  TRY(state_->AcceptEdit(etag));
-  state_->placements = std::move(placements);
-  ++state_->placements_version;
-  state_->Touch();
-  const std::lock_guard read(state_->reading);
-  state_->built = std::move(pose_space);
-  return {};
+  next.placements = std::move(placements);
+  ++next.placements_version;
+  return state_->Commit(std::move(next), std::move(product));
 }
 
 }  // namespace posespace

@@ -2,26 +2,22 @@
 #ifndef POSESPACE_SESSION_SESSION_H_
 #define POSESPACE_SESSION_SESSION_H_
 
-#include <chrono>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/result.h"
-#include "session/build_job.h"
 #include "session/build_pool.h"
 #include "session/ids.h"
 #include "session/limits.h"
 #include "session/placements.h"
 #include "session/pose_space.h"
+#include "session/session_view.h"
 #include "session/upload.h"
+#include "store/store.h"
 
 namespace posespace {
-
-// One place of the character: shape id -> point, drawing pixels.
-using Correspondence = std::map<std::string, Point>;
 
 // What a build may vary; see BuildOptions in session_service.proto.
 struct BuildRequest {
@@ -38,20 +34,12 @@ struct Suggestion {
   std::string etag;          // of the session that was looked at
 };
 
-// What one look at a session shows.  A copy.
-struct SessionView {
-  std::string id;
-  std::string display_name;
-  std::map<std::string, std::string> labels;
-  std::vector<std::string> shape_ids;  // in the order of upload
-  std::vector<Correspondence> correspondences;
-  Placements placements;  // set or default; a drawing uploaded after the setting has none
-  bool placements_are_default = true;
-  std::string etag;
-  std::chrono::system_clock::time_point created;
-  std::chrono::system_clock::time_point updated;
-  std::string revision;              // empty before the first build
-  std::optional<BuildStatus> build;  // the latest
+// What a session is created with.
+struct NewSession {
+  std::string id = {};            // empty: an unguessable one is chosen (128 random bits)
+  std::string display_name = {};  // up to 256 bytes
+  std::map<std::string, std::string> labels = {};  // up to 64, keys and values up to 256 bytes
+  std::string request_id = {};                     // up to 256 bytes
 };
 
 // The small mutable thing that a caller edits: drawings, correspondences, placements, and the state
@@ -59,12 +47,30 @@ struct SessionView {
 // wait for each other; View() waits for no more than a copy; readers of the built pose space take a
 // shared pointer and never wait for an edit or a build.
 //
+// With a store, what a call changed is kept there before the call returns, and what a build made
+// before the build is said to have succeeded; what cannot be kept has not happened, and the call
+// fails with kStoreUnavailable.  A session loaded again is the same, its etag and blends included;
+// of its builds it knows the one behind its pose space.  Calls that edit wait for the store;
+// reading ones never do.
+//
 // The etag changes with every edit and with every new revision.  An empty etag in a condition means
 // any.  Edits of a session that was closed fail with kSessionNotFound.
 class Session {
  public:
+  // A session that ends with its object.
   Session(std::string id, std::string display_name, std::map<std::string, std::string> labels,
           const Limits& limits);
+
+  // A new session, kept in a store.  Fails with kSessionExists, kStoreUnavailable.
+  static Result<std::shared_ptr<Session>> Create(NewSession request, const Limits& limits,
+                                                 std::shared_ptr<Store> store);
+
+  // A kept session with its drawings and pose space.  Damaged bytes of a pose space cost no more
+  // than it: the session loads, and Built() says so until it is built again.
+  // Fails  kSessionNotFound, kStoreUnavailable, kSnapshotCorrupt (its record, or a drawing).
+  // Cost   some 10 ms, of which a pose space is most.
+  static Result<std::shared_ptr<Session>> Load(const std::string& id, const Limits& limits,
+                                               std::shared_ptr<Store> store);
 
   const std::string& id() const { return id_; }
   SessionView View() const;
@@ -109,17 +115,26 @@ class Session {
   std::shared_ptr<BuildJob> LatestBuild() const;
 
   // The built pose space.  Fails with kSessionNotBuilt; the message says why the latest build
-  // failed, if it did.
+  // failed, if it did; with kSnapshotCorrupt when it was built, but its stored bytes are damaged.
   Result<std::shared_ptr<const PoseSpace>> Built() const;
 
-  // Cancels a running build; the session is about to go.
+  // Cancels a running build; the object is about to go.
   void Close();
-  // The same on a condition.  Fails  kEtagMismatch, kSessionNotFound (closed before).
-  Result<void> CloseIf(const std::string& etag);
+  // Removes the session from its store and closes it.
+  // Fails  kEtagMismatch, kSessionNotFound (closed before), kStoreUnavailable.
+  Result<void> Delete(const std::string& etag);
   bool closed() const;
+
+  // About how much memory its drawings and pose space take.  Waits for no more than a copy.
+  std::int64_t MemoryBytes() const;
+
+  // True while a build waits or runs: the session is needed though nobody holds it.
+  bool is_building() const;
 
  private:
   struct State;
+  Session(std::shared_ptr<State> state, const Limits& limits);
+
   const std::string id_;
   const Limits limits_;
   const std::shared_ptr<State> state_;  // shared with running builds, which publish into it

@@ -31,24 +31,17 @@ Result<BuildStatus> Session::StartBuild(const BuildRequest& request, BuildPool& 
   const std::lock_guard edit(state_->editing);
   BuildInputs inputs;
   inputs.options = TRY(OptionsOf(request, limits_));
-  std::int64_t placed = 0;
-  {
-    const std::lock_guard lock(state_->mutex);
-    TRY(state_->AcceptEdit(""));
-    if (state_->drawings.empty()) {
-      return Error{ErrorCode::kNoShapes, "session '" + id_ + "' has no drawing to build from", {}};
-    }
-    const std::vector<std::string> ids = state_->ShapeIds();
-    const Placements placements = PlacementsOrDefault(state_->placements, ids);
-    TRY(CheckPlaced(ids, placements));
-    inputs.placements.resize(std::ssize(ids), 2);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      inputs.placements.row(i) = placements.at(ids[i]);
-    }
-    inputs.drawings = state_->drawings;
-    inputs.landmarks = LandmarksOf(state_->correspondences, inputs.drawings);
-    placed = state_->placements_version;
+  const State::Content content = TRY(state_->ContentToEdit(""));
+  if (content.drawings.empty()) {
+    return Error{ErrorCode::kNoShapes, "session '" + id_ + "' has no drawing to build from", {}};
   }
+  const std::vector<std::string> ids = content.ShapeIds();
+  const Placements placements = PlacementsOrDefault(content.placements, ids);
+  TRY(CheckPlaced(ids, placements));
+  inputs.placements.resize(std::ssize(ids), 2);
+  for (std::size_t i = 0; i < ids.size(); ++i) inputs.placements.row(i) = placements.at(ids[i]);
+  inputs.drawings = content.drawings;
+  inputs.landmarks = LandmarksOf(content.correspondences, inputs.drawings);
 
   const auto previous = state_->Latest();
   const auto built = state_->BuiltOrNull();
@@ -60,14 +53,22 @@ Result<BuildStatus> Session::StartBuild(const BuildRequest& request, BuildPool& 
     if (!status.ended() || (status.state == BuildState::kSucceeded && current)) return status;
   }
 
-  // What is built already, or comes from it by new placements alone, is not built again.
-  const std::string build_id = std::to_string(++state_->builds);
+  // What is built already, or comes from it by new placements alone, is not built again.  The
+  // number is kept first: no later build, of whatever process, has it, too.
+  const std::int64_t number = state_->builds + 1;
+  const std::string build_id = std::to_string(number);
+  const bool is_built = built != nullptr && built->revision() == revision;
+  TRY(state_->Keep(content, {built, is_built ? build_id : state_->build_id}, number));
+  state_->builds = number;
   std::shared_ptr<BuildJob> job;
-  if (built != nullptr && built->revision() == revision) {
+  if (is_built) {
+    state_->build_id = build_id;
     job = std::make_shared<BuildJob>(build_id, built, state_->build_changes);
   } else {
-    const auto publish = [weak = std::weak_ptr(state_), placed](const BuildStatus& status) {
-      if (const auto state = weak.lock()) state->Publish(status, placed);
+    const auto publish = [weak = std::weak_ptr(state_), placed = content.placements_version](
+                             const BuildStatus& status) -> Result<void> {
+      const auto state = weak.lock();
+      return state == nullptr ? Result<void>() : state->Publish(status, placed);
     };
     job = std::make_shared<BuildJob>(build_id, std::move(inputs), publish, built,
                                      state_->build_changes);
@@ -93,6 +94,10 @@ std::shared_ptr<BuildJob> Session::LatestBuild() const { return state_->Latest()
 
 Result<std::shared_ptr<const PoseSpace>> Session::Built() const {
   if (auto built = state_->BuiltOrNull()) return built;
+  {
+    const std::lock_guard lock(state_->reading);
+    if (state_->lost) return *state_->lost;
+  }
   std::string message = "session '" + id_ + "' has not been built";
   if (const auto latest = state_->Latest()) {
     const BuildStatus status = latest->Status();
@@ -109,10 +114,12 @@ void Session::Close() {
   if (const auto latest = state_->Latest()) latest->Cancel();
 }
 
-Result<void> Session::CloseIf(const std::string& etag) {
+Result<void> Session::Delete(const std::string& etag) {
   {
+    const std::lock_guard edit(state_->editing);
+    TRY(state_->ContentToEdit(etag));
+    if (state_->store != nullptr) TRY(state_->store->Remove(id_));
     const std::lock_guard lock(state_->mutex);
-    TRY(state_->AcceptEdit(etag));
     state_->closed = true;
   }
   if (const auto latest = state_->Latest()) latest->Cancel();
@@ -120,5 +127,10 @@ Result<void> Session::CloseIf(const std::string& etag) {
 }
 
 bool Session::closed() const { return state_->closed; }
+
+bool Session::is_building() const {
+  const auto latest = state_->Latest();
+  return latest != nullptr && !latest->ended();
+}
 
 }  // namespace posespace

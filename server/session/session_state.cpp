@@ -14,8 +14,9 @@ Session::State::State(std::string session_id, std::string name,
       display_name(std::move(name)),
       labels(std::move(notes)),
       nonce(RandomId()),
-      created(std::chrono::system_clock::now()),
-      updated(created) {}
+      created(std::chrono::system_clock::now()) {
+  content.updated = created;
+}
 
 std::shared_ptr<BuildJob> Session::State::Latest() const {
   const std::lock_guard lock(reading);
@@ -27,37 +28,69 @@ std::shared_ptr<const PoseSpace> Session::State::BuiltOrNull() const {
   return built;
 }
 
-void Session::State::Publish(const BuildStatus& status, std::int64_t placed) {
-  if (status.pose_space == nullptr) return;
+Session::State::Content Session::State::Current() const {
+  const std::lock_guard lock(mutex);
+  return content;
+}
+
+Result<Session::State::Content> Session::State::ContentToEdit(const std::string& etag) const {
+  const std::lock_guard lock(mutex);
+  TRY(AcceptEdit(etag));
+  return content;
+}
+
+Session::State::Product Session::State::CurrentProduct() const { return {BuiltOrNull(), build_id}; }
+
+Result<void> Session::State::Publish(const BuildStatus& status, std::int64_t placed) {
+  if (status.pose_space == nullptr) return {};
   const std::lock_guard edit(editing);
-  if (const auto job = Latest(); job == nullptr || job->Status().id != status.id) return;
+  if (const auto job = Latest(); job == nullptr || job->Status().id != status.id) return {};
+  if (closed) return {};
 
   // Placements set while the job ran count for what it built.
   std::shared_ptr<const PoseSpace> pose_space = status.pose_space;
-  std::optional<Points> places;
-  {
-    const std::lock_guard lock(mutex);
-    if (placements_version != placed) {
-      places = PlacesOf(*pose_space, PlacementsOrDefault(placements, ShapeIds()));
+  Content next = Current();
+  if (next.placements_version != placed) {
+    const auto places =
+        PlacesOf(*pose_space, PlacementsOrDefault(next.placements, next.ShapeIds()));
+    if (places) {
+      if (auto moved = pose_space->WithPlacements(*places)) pose_space = std::move(*moved);
     }
   }
-  if (places) {
-    if (auto moved = pose_space->WithPlacements(*places)) pose_space = std::move(*moved);
-  }
+  return Commit(std::move(next), {std::move(pose_space), status.id});
+}
 
+Result<void> Session::State::Commit(Content next, Product product) {
+  ++next.version;
+  next.updated = std::chrono::system_clock::now();
+  TRY(Keep(next, product, builds));
+  Weigh(next, product);
+  build_id = std::move(product.build_id);
   const std::lock_guard lock(mutex);
-  if (closed) return;
-  Touch();
+  content = std::move(next);
   const std::lock_guard read(reading);
-  built = std::move(pose_space);
+  built = std::move(product.pose_space);
+  if (built != nullptr) lost.reset();
+  return {};
 }
 
-std::string Session::State::Etag() const { return nonce + "-" + std::to_string(version); }
-
-void Session::State::Touch() {
-  ++version;
-  updated = std::chrono::system_clock::now();
+void Session::State::Weigh(const Content& next, const Product& product) {
+  std::set<const Drawing*> drawings;
+  for (const auto& drawing : next.drawings) drawings.insert(drawing.get());
+  if (product.pose_space != nullptr) {
+    for (const auto& drawing : product.pose_space->drawings()) drawings.insert(drawing.get());
+  }
+  constexpr std::int64_t kSmallThings = 4'096;
+  std::int64_t bytes = kSmallThings;
+  for (const Drawing* const drawing : drawings) bytes += MemoryBytesOf(*drawing);
+  drawing_bytes = bytes;
 }
+
+std::string EtagOf(const std::string& nonce, std::int64_t version) {
+  return nonce + "-" + std::to_string(version);
+}
+
+std::string Session::State::Etag() const { return EtagOf(nonce, content.version); }
 
 Result<void> Session::State::AcceptEdit(const std::string& etag) const {
   if (closed) {
@@ -72,13 +105,13 @@ Result<void> Session::State::AcceptEdit(const std::string& etag) const {
   return {};
 }
 
-std::vector<std::string> Session::State::ShapeIds() const {
+std::vector<std::string> Session::State::Content::ShapeIds() const {
   std::vector<std::string> ids;
   for (const auto& drawing : drawings) ids.push_back(drawing->id);
   return ids;
 }
 
-std::ptrdiff_t Session::State::Find(const std::string& shape_id) const {
+std::ptrdiff_t Session::State::Content::Find(const std::string& shape_id) const {
   const auto found = std::find_if(drawings.begin(), drawings.end(),
                                   [&](const auto& drawing) { return drawing->id == shape_id; });
   return found == drawings.end() ? -1 : found - drawings.begin();

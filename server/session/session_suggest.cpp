@@ -14,9 +14,9 @@ Result<Suggestion> Session::Suggest(int samples, Progress* progress) const {
   {
     const std::lock_guard lock(state_->mutex);
     TRY(state_->AcceptEdit(""));
-    drawings = state_->drawings;
-    landmarks = LandmarksOf(state_->correspondences, drawings);
-    suggestion.shape_ids = state_->ShapeIds();
+    drawings = state_->content.drawings;
+    landmarks = LandmarksOf(state_->content.correspondences, drawings);
+    suggestion.shape_ids = state_->content.ShapeIds();
     suggestion.etag = state_->Etag();
   }
   if (drawings.empty()) {

@@ -26,6 +26,7 @@ REVIEWED = {
     r"libjpeg": "IJG and BSD-3-Clause",
     r"libwebp": "BSD-3-Clause",
     r"libz": "Zlib",
+    r"libsqlite3": "public domain",
 }
 
 

@@ -100,6 +100,7 @@ class Connection final : public PlayTransport {
   void ScheduleWork() override {
     Begin([this] { stream_.Work(); });
   }
+  void ScheduleLoad() override { ScheduleWork(); }
   void Finish(Result<void> outcome) override {
     if (!cancelled_) {
       EXPECT_TRUE(outcome);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/rpc/built_session.h"
+#include "tests/support/flaky_store.h"
 
 namespace posespace {
 namespace {
@@ -37,6 +38,10 @@ class Wire final : public PlayTransport {
     EXPECT_FALSE(work) << "two threads at once";
     work = true;
   }
+  void ScheduleLoad() override {
+    ++loads;
+    ScheduleWork();
+  }
   void Finish(Result<void> outcome) override {
     EXPECT_FALSE(finished) << "finished twice";
     finished = true;
@@ -46,6 +51,7 @@ class Wire final : public PlayTransport {
   v1::PlayRequest* reading = nullptr;
   const v1::PlayResponse* writing = nullptr;
   bool work = false;
+  int loads = 0;
   bool finished = false;
   std::optional<ErrorCode> error;
 };
@@ -246,6 +252,47 @@ TEST_F(Play, BindsASlotAnew) {
   BindSlot0();
   Say(Tick(2, {0}));
   EXPECT_EQ(TakeAll().back().frame_result().items(0).reason(), "");
+}
+
+TEST_F(Play, BindsASessionInMemoryWithoutAskingForAnotherThread) {
+  Say(Bind(0));
+  EXPECT_FALSE(wire_.work);
+  EXPECT_EQ(TakeAll().back().bound().reason(), "");
+  EXPECT_EQ(wire_.loads, 0);
+}
+
+// A registry that has just been opened: the session is in the store alone.
+struct StoredSession {
+  StoredSession() {
+    BuiltSession built({}, store);
+    stored = Registry::Open({}, store).value();
+  }
+  const std::shared_ptr<FlakyStore> store = std::make_shared<FlakyStore>();
+  std::unique_ptr<Registry> stored;
+};
+
+TEST(PlayOfAStoredSession, LoadsItOnAThreadThatMayWait) {
+  const StoredSession session;
+  Wire wire;
+  PlayStream stream(*session.stored, Limits(), wire);
+  stream.Start();
+  const auto answer = [&] {
+    const v1::PlayResponse message = *std::exchange(wire.writing, nullptr);
+    stream.OnWritten(true);
+    return message;
+  };
+  EXPECT_TRUE(answer().has_welcome());
+  v1::PlayRequest bind;
+  bind.mutable_bind()->set_session_id("cell");
+  *std::exchange(wire.reading, nullptr) = bind;
+  stream.OnRead(true);
+  EXPECT_EQ(session.store->records_read, 0) << "the thread that read the message reads no disk";
+  EXPECT_EQ(wire.writing, nullptr);
+  EXPECT_EQ(wire.loads, 1);
+  ASSERT_TRUE(std::exchange(wire.work, false));
+  stream.Work();
+  EXPECT_EQ(session.store->records_read, 1);
+  EXPECT_EQ(answer().bound().reason(), "");
 }
 
 // A session of its own; made before the stream.

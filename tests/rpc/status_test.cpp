@@ -59,10 +59,13 @@ TEST(Status, CodesAreThoseOfTheContract) {
   EXPECT_EQ(StatusCodeOf(ErrorCode::kEtagMismatch), grpc::StatusCode::ABORTED);
   EXPECT_EQ(StatusCodeOf(ErrorCode::kStreamLimit), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(StatusCodeOf(ErrorCode::kDraining), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(StatusCodeOf(ErrorCode::kStoreUnavailable), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(StatusCodeOf(ErrorCode::kSnapshotCorrupt), grpc::StatusCode::DATA_LOSS);
 }
 
 TEST(Status, SaysWhenTryingAgainHelps) {
-  for (const ErrorCode code : {ErrorCode::kBuildQueueFull, ErrorCode::kDraining}) {
+  for (const ErrorCode code :
+       {ErrorCode::kBuildQueueFull, ErrorCode::kDraining, ErrorCode::kStoreUnavailable}) {
     const auto details = DetailsOf(StatusOf({code, "later", {}}));
     EXPECT_GT(Find<google::rpc::RetryInfo>(details).retry_delay().seconds(), 0);
   }

@@ -41,9 +41,10 @@ class Record {
 TEST(BuildJob, BuildsAndTellsItsStoryInOrder) {
   std::vector<BuildState> at_done;
   Record record;
-  BuildJob job("7", CreatureInputs(3), [&](const BuildStatus& status) {
+  BuildJob job("7", CreatureInputs(3), [&](const BuildStatus& status) -> Result<void> {
     at_done.push_back(status.state);
     EXPECT_FALSE(record.Statuses().back().ended()) << "watchers hear of the end after Done";
+    return {};
   });
   EXPECT_EQ(job.revision(), RevisionDigest(CreatureInputs(3)));
   job.Watch(record.Listener());
@@ -79,7 +80,10 @@ TEST(BuildJob, TellsWhyItFailed) {
   BuildInputs inputs = CreatureInputs(2);
   inputs.placements = PointsOf("1 1, 1 1");
   BuildState at_done = BuildState::kQueued;
-  BuildJob job("1", inputs, [&](const BuildStatus& status) { at_done = status.state; });
+  BuildJob job("1", inputs, [&](const BuildStatus& status) -> Result<void> {
+    at_done = status.state;
+    return {};
+  });
   job.Run(kAmple);
   EXPECT_EQ(at_done, BuildState::kFailed);
   const BuildStatus status = job.Status();
@@ -87,6 +91,18 @@ TEST(BuildJob, TellsWhyItFailed) {
   ASSERT_TRUE(status.error.has_value());
   EXPECT_EQ(status.error->code, ErrorCode::kPlacementsCoincide);
   EXPECT_EQ(status.pose_space, nullptr);
+}
+
+TEST(BuildJob, FailsWhenNobodyCanTakeWhatItBuilt) {
+  BuildJob job("1", CreatureInputs(2), [](const BuildStatus&) -> Result<void> {
+    return Error{ErrorCode::kStoreUnavailable, "the disk is full", {}};
+  });
+  job.Run(kAmple);
+  EXPECT_EQ(job.Status().state, BuildState::kFailed);
+  ASSERT_TRUE(job.Status().error.has_value());
+  EXPECT_EQ(job.Status().error->code, ErrorCode::kStoreUnavailable);
+  EXPECT_EQ(job.Status().pose_space, nullptr);
+  EXPECT_EQ(job.Status().summary, nullptr);
 }
 
 TEST(BuildJob, FailsWhenItsLimitIsOver) {
@@ -108,9 +124,10 @@ TEST(BuildJob, IsStoppedAtItsLimitLongBeforeItWouldEnd) {
 
 TEST(BuildJob, CancelledWhileQueuedEndsAtOnceAndIsNeverBuilt) {
   int done = 0;
-  BuildJob job("1", CreatureInputs(2), [&](const BuildStatus& status) {
+  BuildJob job("1", CreatureInputs(2), [&](const BuildStatus& status) -> Result<void> {
     ++done;
     EXPECT_EQ(status.state, BuildState::kCancelled);
+    return {};
   });
   Record record;
   job.Watch(record.Listener());
@@ -158,7 +175,7 @@ TEST(BuildJob, StaysAsItIsWhenCancelledAfterItsEnd) {
 
 TEST(BuildJob, FailsWhenWhatItBuiltCannotBeUsed) {
   BuildJob job("1", CreatureInputs(1),
-               [](const BuildStatus&) { throw std::runtime_error("no room"); });
+               [](const BuildStatus&) -> Result<void> { throw std::runtime_error("no room"); });
   job.Run(kAmple);
   EXPECT_EQ(job.Status().state, BuildState::kFailed);
   ASSERT_TRUE(job.Status().error.has_value());

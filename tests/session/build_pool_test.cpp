@@ -111,10 +111,12 @@ TEST(BuildPool, WorksAtTheLowestPriority) {
   const int own = priority_of_this_thread();
   int priority = 0;
   std::binary_semaphore done(0);
-  const auto job = std::make_shared<BuildJob>("1", CreatureInputs(1), [&](const BuildStatus&) {
+  const auto note = [&](const BuildStatus&) -> Result<void> {
     priority = priority_of_this_thread();
     done.release();
-  });
+    return {};
+  };
+  const auto job = std::make_shared<BuildJob>("1", CreatureInputs(1), note);
   BuildPool pool(PoolLimits(1, 1));
   ASSERT_THAT(pool.Submit(job), Succeeds());
   done.acquire();

@@ -294,7 +294,7 @@ TEST(PoseSpace, ReportsItsStagesInOrder) {
 // Whether a person is asked to check a drawing.
 bool AsksToCheck(const PoseSpace& space, const std::string& id) {
   return std::any_of(space.warnings().begin(), space.warnings().end(), [&](const auto& warning) {
-    return warning.find("please check shape '" + id + "'") == 0;
+    return warning.find("'" + id + "'") != std::string::npos;
   });
 }
 

@@ -201,11 +201,11 @@ TEST_F(SessionTest, TakesPlacementsOfAllDrawingsOrNone) {
 
 TEST_F(SessionTest, TakesNoMoreEditsOnceClosed) {
   Put("a");
-  EXPECT_THAT(session_.CloseIf("another etag"), FailsWith(ErrorCode::kEtagMismatch));
+  EXPECT_THAT(session_.Delete("another etag"), FailsWith(ErrorCode::kEtagMismatch));
   EXPECT_FALSE(session_.closed());
-  EXPECT_THAT(session_.CloseIf(session_.etag()), Succeeds());
+  EXPECT_THAT(session_.Delete(session_.etag()), Succeeds());
   EXPECT_TRUE(session_.closed());
-  EXPECT_THAT(session_.CloseIf(""), FailsWith(ErrorCode::kSessionNotFound));
+  EXPECT_THAT(session_.Delete(""), FailsWith(ErrorCode::kSessionNotFound));
   EXPECT_THAT(session_.PutShape("b", CreaturePolygon(0), false),
               FailsWith(ErrorCode::kSessionNotFound));
   EXPECT_THAT(session_.DeleteShape("a"), FailsWith(ErrorCode::kSessionNotFound));

@@ -33,6 +33,7 @@ class Program {
                  ("posespaced-" + std::to_string(getpid()) + "-" + std::to_string(++count));
     std::filesystem::create_directories(directory_);
     arguments.insert(arguments.begin(), POSESPACED);
+    environment.emplace_back("POSESPACED_STORE=memory");  // unless told otherwise before
     for (char** each = environ; *each != nullptr; ++each) environment.emplace_back(*each);
 
     posix_spawn_file_actions_t actions;

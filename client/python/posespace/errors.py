@@ -132,6 +132,8 @@ _BY_REASON: dict[str, type[Error]] = {
     "BUILD_QUEUE_FULL": ResourceExhausted,
     "COMPUTE_QUEUE_FULL": ResourceExhausted,
     "DRAINING": Unavailable,
+    "STORE_UNAVAILABLE": Unavailable,
+    "SNAPSHOT_CORRUPT": InternalError,
     "BUILD_TIMEOUT": DeadlineExceeded,
     "CANCELLED": Cancelled,
     "INTERNAL": InternalError,

@@ -35,7 +35,8 @@ def serve_locally(
         with posespace.serve_locally() as server, posespace.connect(server.address) as client:
             ...
 
-    store            Where sessions are kept: "memory", or "sqlite:PATH".
+    store            Where sessions are kept: "memory", or "sqlite:PATH", a file that outlives the
+                     service, for one service at a time.
     binary           The program; by default what POSESPACED names, else posespaced on PATH, else
                      build/bin/posespaced in the current directory or one above it.
     flags            More flags of posespaced, such as ["--log-level", "debug"].
