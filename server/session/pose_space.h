@@ -49,6 +49,7 @@ struct BuildInputs {
   std::vector<Landmark> landmarks;
   Points placements;  // N x 2, row i the place of drawings[i] in pose space
   MappingOptions options;
+  bool align = true;  // inner vertices to what is drawn there (interior_stage.h)
 };
 
 // Digest of the inputs and the algorithm version, as lower-case hexadecimal: the mesh's inputs
@@ -91,7 +92,7 @@ struct Frame {
 // Immutable; share freely.  A blend takes no lock.
 class PoseSpace {
  public:
-  // Builds from scratch; reports stages of mapping and "weights" to `progress`.
+  // Builds from scratch; reports stages of mapping, "alignment" and "weights" to `progress`.
   //
   // Requires  every landmark has one entry a drawing.
   // Fails     kNoShapes, kSizeMismatch, as CheckPlacements (placements.h) before any work, and as

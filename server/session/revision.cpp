@@ -7,7 +7,7 @@ namespace {
 
 // Names the algorithms from drawings to mesh, and from mesh to weights: a change of results needs a
 // new number, so that nothing built by older code is taken for the same.
-constexpr std::string_view kMeshVersion = "posespace-mesh/1";
+constexpr std::string_view kMeshVersion = "posespace-mesh/2";
 constexpr std::string_view kRevisionVersion = "posespace-revision/1";
 
 void AddOptions(const MappingOptions& options, Digest& digest) {
@@ -40,6 +40,7 @@ std::string MeshDigest(const BuildInputs& inputs) {
   digest.Add(static_cast<std::int64_t>(inputs.landmarks.size()));
   for (const Landmark& landmark : inputs.landmarks) AddLandmark(landmark, digest);
   AddOptions(inputs.options, digest);
+  digest.Add(static_cast<std::int64_t>(inputs.align));
   return digest.Hex();
 }
 

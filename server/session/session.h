@@ -23,6 +23,7 @@ namespace posespace {
 struct BuildRequest {
   double tolerance = 0.03;           // 0.001 .. 0.2
   double target_edge_length = 0.08;  // 0.02 .. 1
+  bool align = true;                 // inner vertices to what is drawn there
 };
 
 // What automatic matching would do with a session's drawings and marks.

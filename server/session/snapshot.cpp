@@ -97,6 +97,9 @@ void Write(const MappingReport& report, ByteWriter& out) {
       .Add(report.min_angle);
   out.AddEach(report.confidence, [&](double value) { out.Add(value); });
   out.AddEach(report.seconds, [&](const auto& stage) { out.Add(stage.first).Add(stage.second); });
+  for (const auto* ghosts : {&report.ghosts_before, &report.ghosts_after}) {
+    out.AddEach(*ghosts, [&](double value) { out.Add(value); });
+  }
 }
 
 MappingReport ReadMappingReport(ByteReader& in) {
@@ -110,6 +113,9 @@ MappingReport ReadMappingReport(ByteReader& in) {
     std::string stage = in.Text();
     report.seconds.emplace_back(std::move(stage), in.Real());
   });
+  for (auto* ghosts : {&report.ghosts_before, &report.ghosts_after}) {
+    in.ReadEach([&] { ghosts->push_back(in.Real()); });
+  }
   return report;
 }
 

@@ -16,7 +16,9 @@ from PIL import Image
 from synthetic_drawings import WALK, figure, png_of, star
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = {"report.levels", "report.seconds", "report.confidence", "labels"}  # by names
+MAPS = {
+    "report.levels", "report.seconds", "report.confidence", "report.ghost_losses", "labels"
+}  # by names  # fmt: skip
 
 
 @pytest.fixture(scope="module")

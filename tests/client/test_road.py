@@ -121,6 +121,18 @@ def test_a_finer_mesh_is_built_on_request(session):
     assert fine.revision != coarse.revision
 
 
+def test_alignment_is_on_unless_switched_off_and_reports_its_gain(session):
+    for name, pose in WALK.items():
+        session.put_shape(name, image=figure(**pose))
+    aligned = session.build()
+    assert set(aligned.ghost_losses) == set(WALK)
+    assert 0 <= aligned.ghost_loss.after <= aligned.ghost_loss.before < 1
+    unaligned = session.build(align=False)
+    assert unaligned.ghost_loss is None and unaligned.ghost_losses == {}
+    assert unaligned.revision != aligned.revision
+    assert session.build(align=True).revision == aligned.revision
+
+
 def test_marked_places_become_vertices_of_the_mesh(session):
     marks = []
     for name, turn in (("a", 0.0), ("b", 0.25), ("c", -0.2)):

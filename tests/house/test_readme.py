@@ -10,7 +10,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import posespace
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -72,14 +71,9 @@ def test_the_python_call_runs(folder, environment):
     assert "(512, 512, 4)" in run([sys.executable, "-c", script], folder, environment)
 
 
-def test_the_cpp_call_runs(folder, environment):
-    (call,) = blocks("cpp")
-    assert call in (ROOT / "client/cpp/examples/quickstart.cpp").read_text(), (
-        "README shows a part of the example, word for word"
-    )
-    with posespace.serve_locally() as server:
-        said = run([BIN / "quickstart", server.address], folder, environment)
-    assert re.match(r"\d+ vertices\n0: ", said)
+def test_the_cpp_call_is_the_examples():
+    (call,) = blocks("cpp")  # tests/client_cpp/test_installed.py builds and runs it
+    assert call in (ROOT / "client/cpp/examples/quickstart.cpp").read_text()
 
 
 def test_the_service_listens_where_it_is_told(folder, environment):
@@ -109,7 +103,9 @@ def test_every_folder_of_the_tree_has_its_line():
         text=True,
     ).stdout.split()
     top = {name.split("/")[0] for name in tracked if "/" in name and not name.startswith(".")}
-    rooms = {"/".join(name.split("/")[:2]) for name in tracked if name.startswith(("server/", "client/"))}
+    rooms = {
+        "/".join(name.split("/")[:2]) for name in tracked if name.startswith(("server/", "client/"))
+    }
     rooms = {room for room in rooms if (ROOT / room).is_dir()}
     for folder in (top - {"server", "client"}) | rooms:
         assert f"`{folder}/`" in README, f"README does not say what {folder}/ is"

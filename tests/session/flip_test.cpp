@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drawing/decode.h"
+#include "drawing/png_file.h"
 #include "geometry/polygon.h"
 #include "session/session.h"
 #include "tests/session/sample_drawings.h"

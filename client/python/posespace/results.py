@@ -47,6 +47,14 @@ class Shape:
     flipped: bool
 
 
+@dataclass(frozen=True)
+class GhostLoss:
+    """Detail lost in a mix of drawings, 0 to 1: where an eye lies on a cheek, both are pale ghosts."""
+
+    before: float
+    after: float
+
+
 @dataclass(frozen=True, eq=False)
 class Suggestion:
     """What automatic matching would do with the drawings and marks as they were.
@@ -81,6 +89,9 @@ class BuildReport:
     seconds           By stage.
     confidence        By drawing: how clear the automatic matching was, in (0, 1].
     warnings          What a person should know, such as drawings to check.
+    ghost_loss        How much detail all drawings mixed in equal parts lose, before and after their
+                      insides were aligned; None when alignment was off or had nothing to do.
+    ghost_losses      By drawing: how much of its own detail that mix loses.
     """
 
     revision: str
@@ -93,6 +104,8 @@ class BuildReport:
     seconds: dict[str, float]
     confidence: dict[str, float]
     warnings: list[str]
+    ghost_loss: GhostLoss | None
+    ghost_losses: dict[str, GhostLoss]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +113,8 @@ class Build:
     """Where a build stands.
 
     state     "queued", "running", "succeeded", "failed" or "cancelled".
-    stage     "matching", "simplification", "triangulation", "improvement" or "weights".
+    stage     "matching", "simplification", "triangulation", "improvement", "alignment" or
+              "weights".
     fraction  Done so far, 0 to 1.
     report    When it succeeded.
     error     When it failed or was cancelled: what `build` raises.
