@@ -241,8 +241,8 @@ class Authoring:
         tolerance           Farthest the mesh outline may lie from the drawing's, relative to the
                             square root of its area, 0.001 to 0.2; 0.03 by default.
         target_edge_length  Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
-        align               Whether inner vertices move so that what is drawn inside corresponds, eyes
-                            to eyes; report.ghost_loss says what it gained.  True by default.
+        align               Whether inner vertices move so that what is drawn inside corresponds,
+                            eyes to eyes; report.ghost_loss says what it gained.  True by default.
         on_progress         Called with the stage's name and the fraction done, which never falls.
         timeout             Seconds to wait; by default as long as the service lets a build take.
 

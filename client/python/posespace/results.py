@@ -49,7 +49,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class GhostLoss:
-    """Detail lost in a mix of drawings, 0 to 1: where an eye lies on a cheek, both are pale ghosts."""
+    """Detail lost in a mix of drawings, 0 to 1: an eye upon a cheek makes two pale ghosts."""
 
     before: float
     after: float
