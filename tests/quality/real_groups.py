@@ -12,6 +12,7 @@ import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import posespace
@@ -72,6 +73,15 @@ def picture_of(path: Path) -> NDArray[np.uint8]:
         source = io.BytesIO(drawn.stdout)
     with Image.open(source) as picture:
         return np.array(picture.convert("RGBA"))
+
+
+def canvas_of(path: Path, shape: posespace.Shape) -> tuple[float, float, float, float]:
+    """The box x, y, width, height of drawing coordinates that a file's picture covers."""
+    left, top = 0.0, 0.0
+    if path.suffix == ".svg":
+        box = ElementTree.parse(path).getroot().get("viewBox", "0 0")
+        left, top = map(float, box.replace(",", " ").split()[:2])
+    return (left, top, *shape.size)
 
 
 def painted(pixels: NDArray[np.uint8], group: Group) -> NDArray[np.bool_]:
