@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SHAPES = Path(os.environ.get("POSESPACE_SHAPES", ROOT.parent / "shared" / "shapes"))
 ABSENT = f"no drawings in {SHAPES}; name their folder by POSESPACE_SHAPES"
 
-_SIDE = 512  # pixels of a vector drawing's longer side when it is looked at
+_SIDE = 1024  # pixels of a vector drawing's longer side: as many as the service gives it at most
 
 
 @dataclass(frozen=True)
