@@ -37,7 +37,8 @@ struct Moving {
 // Twice as fine as the finest texture shows everything there is.
 int RasterSize(std::span<const ReducedTexture> textures) {
   int longest = 1;
-  for (const ReducedTexture& each : textures) longest = std::max({longest, each.width, each.height});
+  for (const ReducedTexture& each : textures)
+    longest = std::max({longest, each.width, each.height});
   return std::min(2 * longest, AlignmentSize(static_cast<int>(textures.size())));
 }
 
@@ -162,7 +163,8 @@ Result<Alignment> AlignInteriors(const CompatibleMesh& mesh, const Points& commo
                                  std::span<const ReducedTexture> textures, Progress* progress) {
   const std::size_t count = mesh.poses.size();
   if (textures.size() != count || common.rows() != mesh.num_vertices()) {
-    return Error{ErrorCode::kSizeMismatch, "textures and common pose are not those of the mesh", {}};
+    return Error{
+        ErrorCode::kSizeMismatch, "textures and common pose are not those of the mesh", {}};
   }
   Alignment result{mesh.poses, {}, std::vector<GhostChange>(count)};
   const bool plain = std::all_of(textures.begin(), textures.end(),
@@ -178,8 +180,7 @@ Result<Alignment> AlignInteriors(const CompatibleMesh& mesh, const Points& commo
     const cv::Mat4f warped = comparison.Warp(i, mesh.poses[i]);
     unaligned.push_back(FillBeyondPaint(warped));
     KeepPainted(warped, &painted);
-    moving.push_back(
-        {InteriorMoves(mesh, mesh.poses[i]), Points::Zero(mesh.num_vertices(), 2)});
+    moving.push_back({InteriorMoves(mesh, mesh.poses[i]), Points::Zero(mesh.num_vertices(), 2)});
   }
   const GhostLoss before = MeasureGhosts(unaligned, painted);
   for (std::size_t i = 0; i < count; ++i) result.each[i] = {before.each[i], before.each[i]};

@@ -22,8 +22,8 @@ struct ReducedTexture {
   bool plain = true;  // painted in one colour, or not at all: there is nothing to align
 };
 
-// The texture averaged over blocks of pixels, so that neither side exceeds `size`; a plain one comes
-// without texels.  Cost: one pass over the pixels.
+// The texture averaged over blocks of pixels, so that neither side exceeds `size`; a plain one
+// comes without texels.  Cost: one pass over the pixels.
 ReducedTexture Reduce(const Texture& texture, int size);
 
 // The size to reduce textures to, and to align at, when there are this many drawings: 512, less for
@@ -43,18 +43,19 @@ struct Alignment {
   std::vector<GhostChange> each;  // N: the part of a drawing's own detail that the mix loses
 };
 
-// Moves the inner vertices of a mesh so that the insides of the drawings correspond: eyes meet eyes.
+// Moves the inner vertices of a mesh so that the insides of the drawings correspond: eyes meet
+// eyes.
 //
-// All drawings are warped to `common` (V x 2, such as the blend with equal weights); image flow from
-// the one that differs least from the others says where each one's features lie there.  A field that
-// follows the flow at features, as far as pictures agree about them, and is smooth elsewhere carries
-// the vertices; all drawings share the way evenly, so that none is bent alone.  Edges of the painting
-// do not count as features.  A drawing keeps its old vertices where moving them does not lower the
-// ghost loss.
+// All drawings are warped to `common` (V x 2, such as the blend with equal weights); image flow
+// from the one that differs least from the others says where each one's features lie there.  A
+// field that follows the flow at features, as far as pictures agree about them, and is smooth
+// elsewhere carries the vertices; all drawings share the way evenly, so that none is bent alone.
+// Edges of the painting do not count as features.  A drawing keeps its old vertices where moving
+// them does not lower the ghost loss.
 //
-// Boundary vertices and landmarks stay.  Every triangle stays positive in every drawing (exact); the
-// star of no vertex has a smaller angle than min(before, 8 degrees).  Fewer than two drawings, and
-// plain ones, come back as they are.  Equal input gives equal output; the order of the drawings
+// Boundary vertices and landmarks stay.  Every triangle stays positive in every drawing (exact);
+// the star of no vertex has a smaller angle than min(before, 8 degrees).  Fewer than two drawings,
+// and plain ones, come back as they are.  Equal input gives equal output; the order of the drawings
 // changes nothing but rounding.
 //
 // Requires  a valid mesh; textures reduced to AlignmentSize(N).

@@ -87,8 +87,8 @@ cv::Mat4f CommonPose::Warp(const Points& pose, const ReducedTexture& texture) co
     }
   }
   cv::Mat4f picture;
-  cv::remap(source, picture, texels, cv::noArray(), cv::INTER_LINEAR,
-            cv::BORDER_CONSTANT, cv::Scalar::all(0.0));
+  cv::remap(source, picture, texels, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+            cv::Scalar::all(0.0));
   return picture;
 }
 

@@ -80,7 +80,8 @@ cv::Mat3f FeatureFlow(const cv::Mat3f& from, const cv::Mat3f& to, double reach) 
   for (int y = 0; y < flow.rows; ++y) {
     for (int x = 0; x < flow.cols; ++x) {
       const cv::Vec3f difference = found(y, x) - from(y, x);
-      const float agreement = std::exp(-difference.dot(difference) / (2.0f * kLikeness * kLikeness));
+      const float agreement =
+          std::exp(-difference.dot(difference) / (2.0f * kLikeness * kLikeness));
       const float trust = agreement * std::min(detail_here(y, x), detail_there(y, x));
       gathered(y, x) = {trust * flow(y, x)[0], trust * flow(y, x)[1], trust};
     }

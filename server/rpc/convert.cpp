@@ -277,9 +277,8 @@ void ToProto(const BuildSummary& summary, v1::BuildReport* report) {
     (*report->mutable_confidence())[summary.shape_ids[k]] = mapping.confidence[k];
   }
   for (std::size_t k = 0; k < mapping.ghosts_before.size(); ++k) {
-    v1::GhostLoss& loss =
-        k == 0 ? *report->mutable_ghost_loss()
-               : (*report->mutable_ghost_losses())[summary.shape_ids[k - 1]];
+    v1::GhostLoss& loss = k == 0 ? *report->mutable_ghost_loss()
+                                 : (*report->mutable_ghost_losses())[summary.shape_ids[k - 1]];
     loss.set_before(mapping.ghosts_before[k]);
     loss.set_after(mapping.ghosts_after[k]);
   }

@@ -13,8 +13,8 @@ namespace posespace {
 
 // Moves the inner vertices of a mapping's mesh so that what is drawn there corresponds
 // (drawing/alignment.h), compared in the blend of all drawings with equal weights; adds the stage,
-// the ghost losses and the new smallest angle to its report.  Drawings in one colour are only looked
-// at.
+// the ghost losses and the new smallest angle to its report.  Drawings in one colour are only
+// looked at.
 //
 // Requires  a mapping of these drawings.
 // Fails     kCancelled, and as RigidBlend::Prepare does.

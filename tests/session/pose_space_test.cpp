@@ -281,8 +281,8 @@ TEST(PoseSpace, ReportsItsStagesInOrder) {
   });
   const auto space = PoseSpace::Build(CreatureInputs(2), &progress);
   ASSERT_THAT(space, Succeeds());
-  const std::vector<std::string> expected = {"matching", "simplification", "triangulation",
-                                             "improvement", "alignment", "weights"};
+  const std::vector<std::string> expected = {"matching",    "simplification", "triangulation",
+                                             "improvement", "alignment",      "weights"};
   EXPECT_EQ(stages, expected);
   EXPECT_GE(last, 0.9);
 
