@@ -17,8 +17,13 @@ from synthetic_drawings import WALK, figure, png_of, star
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = {
-    "report.levels", "report.seconds", "report.confidence", "report.ghost_losses", "labels"
-}  # by names  # fmt: skip
+    "report.levels",
+    "report.seconds",
+    "report.confidence",
+    "report.ghost_loss",
+    "report.ghost_losses",
+    "labels",
+}  # by names
 
 
 @pytest.fixture(scope="module")
