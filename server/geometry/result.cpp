@@ -87,6 +87,8 @@ std::string_view ReasonName(ErrorCode code) {
       return "SLOT_LIMIT";
     case ErrorCode::kSlotNotBound:
       return "SLOT_NOT_BOUND";
+    case ErrorCode::kSuperseded:
+      return "SUPERSEDED";
     case ErrorCode::kBuildQueueFull:
       return "BUILD_QUEUE_FULL";
     case ErrorCode::kComputeQueueFull:

@@ -60,6 +60,7 @@ enum class ErrorCode {
   kStreamLimit,
   kSlotLimit,
   kSlotNotBound,  // an item of a stream that names a slot without a session
+  kSuperseded,    // an item of a stream that a later one replaces
   kBuildQueueFull,
   kComputeQueueFull,
   kDraining,

@@ -27,6 +27,9 @@ struct MappingReport {
   double min_angle = 0.0;                               // of the final mesh, radians
   std::vector<double> confidence;                       // per drawing, as in MatchedOutlines
   std::vector<std::pair<std::string, double>> seconds;  // stage -> seconds, in order
+  // Ghost loss before and after interior alignment: of all drawings together, then of each (N + 1
+  // values).  Empty when there was none; MapShapes leaves them so.
+  std::vector<double> ghosts_before, ghosts_after;
 };
 
 struct Mapping {

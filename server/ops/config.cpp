@@ -42,7 +42,7 @@ void AddLimit(CLI::App& app, const std::string& group, const std::string& flag, 
   AddOption(app, group, flag, value, help)->check(CLI::Range(T{1}, most));
 }
 
-void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
+void AddLimits(CLI::App& app, Limits& limits, int& build_timeout, int& stream_age) {
   const std::string accepted = "Limits on what is accepted";
   AddLimit(app, accepted, "--max-request-bytes", limits.max_request_bytes, "one request",
            std::int64_t{1} << 30);
@@ -75,6 +75,8 @@ void AddLimits(CLI::App& app, Limits& limits, int& build_timeout) {
   AddLimit(app, running, "--concurrent-builds", limits.concurrent_builds, "builds at once", 256);
   AddLimit(app, running, "--build-queue", limits.build_queue, "builds waiting");
   AddLimit(app, running, "--build-timeout", build_timeout, "seconds a build may take");
+  AddLimit(app, running, "--max-stream-age", stream_age,
+           "seconds, give or take a tenth, after which a Play stream is told to begin anew");
 }
 
 }  // namespace
@@ -159,7 +161,8 @@ Config ParseCommandLine(int argc, const char* const* argv, const std::string& ve
             "milliseconds that open streams may take to end after SIGTERM")
       ->check(CLI::Range(0, 600'000));
   int build_timeout = static_cast<int>(config.limits.build_timeout.count());
-  AddLimits(app, config.limits, build_timeout);
+  int stream_age = static_cast<int>(config.limits.max_stream_age.count());
+  AddLimits(app, config.limits, build_timeout, stream_age);
 
   try {
     app.parse(argc, argv);
@@ -168,6 +171,7 @@ Config ParseCommandLine(int argc, const char* const* argv, const std::string& ve
   }
   config.drain_grace = std::chrono::milliseconds(grace);
   config.limits.build_timeout = std::chrono::seconds(build_timeout);
+  config.limits.max_stream_age = std::chrono::seconds(stream_age);
   if (const auto checked = CheckConfig(config); !checked) {
     std::cerr << "posespaced: " << checked.error().message << '\n';
     std::exit(2);

@@ -183,6 +183,7 @@ BuildRequest BuildRequestFromProto(const v1::BuildOptions& options) {
   BuildRequest request;
   if (options.has_tolerance()) request.tolerance = options.tolerance();
   if (options.has_target_edge_length()) request.target_edge_length = options.target_edge_length();
+  if (options.has_align()) request.align = options.align();
   return request;
 }
 
@@ -228,6 +229,7 @@ void ToProto(const Drawing& drawing, v1::Shape* shape) {
   shape->set_height(drawing.height);
   ToProto(drawing.outline, shape->mutable_outline());
   shape->set_holes_filled(drawing.outline.holes_filled);
+  shape->set_flipped(drawing.flipped);
   for (const std::string& warning : drawing.outline.warnings) {
     shape->add_warnings(CleanText(warning, kTextBytes));
   }
@@ -273,6 +275,12 @@ void ToProto(const BuildSummary& summary, v1::BuildReport* report) {
   const std::size_t count = std::min(summary.shape_ids.size(), mapping.confidence.size());
   for (std::size_t k = 0; k < count; ++k) {
     (*report->mutable_confidence())[summary.shape_ids[k]] = mapping.confidence[k];
+  }
+  for (std::size_t k = 0; k < mapping.ghosts_before.size(); ++k) {
+    v1::GhostLoss& loss = k == 0 ? *report->mutable_ghost_loss()
+                                 : (*report->mutable_ghost_losses())[summary.shape_ids[k - 1]];
+    loss.set_before(mapping.ghosts_before[k]);
+    loss.set_after(mapping.ghosts_after[k]);
   }
   for (const std::string& warning : summary.warnings) {
     report->add_warnings(CleanText(warning, kTextBytes));

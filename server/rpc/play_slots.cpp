@@ -33,7 +33,8 @@ void SetRevision(const PoseSpace& pose_space, Answer* answer) {
 PlaySlots::PlaySlots(const Registry& registry, const Limits& limits)
     : registry_(registry), limits_(limits) {}
 
-Result<void> PlaySlots::Answer(const v1::PlayRequest& request, const Send& send) {
+Result<void> PlaySlots::Answer(const v1::PlayRequest& request, const Tags& superseded,
+                               const Send& send) {
   switch (request.message_case()) {
     case v1::PlayRequest::kBind:
       Bind(request.bind(), send);
@@ -43,7 +44,7 @@ Result<void> PlaySlots::Answer(const v1::PlayRequest& request, const Send& send)
       return {};
     case v1::PlayRequest::kTick:
       FollowRevisions(send);
-      return Tick(request.tick(), send);
+      return Tick(request.tick(), superseded, send);
     case v1::PlayRequest::MESSAGE_NOT_SET:
       break;
   }
@@ -101,7 +102,8 @@ void PlaySlots::FollowRevisions(const Send& send) {
   }
 }
 
-Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Send& send) {
+Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded,
+                             const Send& send) {
   if (tick.items_size() > limits_.max_stream_items) {
     return Error{ErrorCode::kProtocolBreach,
                  "frame " + std::to_string(tick.frame_id()) + " has " +
@@ -114,7 +116,15 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Send& send
   result->set_frame_id(tick.frame_id());
   result->mutable_items()->Reserve(tick.items_size());
   for (const v1::PlayRequest::Item& item : tick.items()) {
-    Blend(item, tick.with_weights(), result->add_items());
+    v1::PlayResponse::ItemResult* const answer = result->add_items();
+    answer->set_slot(item.slot());
+    answer->set_tag(item.tag());
+    if (superseded.contains({item.slot(), item.tag()})) {
+      SetError(Error{ErrorCode::kSuperseded, "a later frame asks for this item again", {}}, answer);
+      result->set_superseded(result->superseded() + 1);
+    } else {
+      Blend(item, tick.with_weights(), answer);
+    }
   }
   send(std::move(response));
   return {};
@@ -122,8 +132,6 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Send& send
 
 void PlaySlots::Blend(const v1::PlayRequest::Item& item, bool with_weights,
                       v1::PlayResponse::ItemResult* result) const {
-  result->set_slot(item.slot());
-  result->set_tag(item.tag());
   const auto slot = slots_.find(item.slot());
   auto frame = Guarded([&]() -> Result<Frame> {
     if (slot == slots_.end()) {

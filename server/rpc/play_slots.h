@@ -2,10 +2,13 @@
 #ifndef POSESPACE_RPC_PLAY_SLOTS_H_
 #define POSESPACE_RPC_PLAY_SLOTS_H_
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "geometry/result.h"
 #include "posespace/v1/pose_service.pb.h"
@@ -26,9 +29,12 @@ class PlaySlots {
 
   PlaySlots(const Registry& registry, const Limits& limits);
 
-  // Answers one message.  What is wrong with a slot or an item is in the answer; kProtocolBreach
-  // ends the stream.
-  Result<void> Answer(const v1::PlayRequest& request, const Send& send);
+  // Slot and tag of items.
+  using Tags = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+  // Answers one message; items of `superseded` are not blended.  What is wrong with a slot or an
+  // item is in the answer; kProtocolBreach ends the stream.
+  Result<void> Answer(const v1::PlayRequest& request, const Tags& superseded, const Send& send);
 
   // Moves every slot to its session's newest revision and says which have changed.
   void FollowRevisions(const Send& send);
@@ -49,7 +55,7 @@ class PlaySlots {
 
   Result<Slot> Find(const v1::PlayRequest::Bind& bind);
   void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
-  Result<void> Tick(const v1::PlayRequest::Tick& tick, const Send& send);
+  Result<void> Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded, const Send& send);
   void Blend(const v1::PlayRequest::Item& item, bool with_weights,
              v1::PlayResponse::ItemResult* result) const;
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/play_stream.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace posespace {
 
-PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport)
+PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport,
+                       Clock::time_point old_at)
     : transport_(transport),
       max_in_flight_(static_cast<std::size_t>(limits.max_in_flight)),
+      old_at_(old_at),
       slots_(registry, limits) {
   v1::PlayResponse welcome;
   welcome.mutable_welcome()->set_max_slots(static_cast<std::uint32_t>(limits.max_stream_slots));
@@ -67,11 +70,14 @@ void PlayStream::Work() {
   std::vector<v1::PlayResponse> answers;
   const auto send = [&](v1::PlayResponse answer) { answers.push_back(std::move(answer)); };
   // The front stays in place while others append: deque references survive push_back.
-  const auto request = [&]() -> const v1::PlayRequest& {
+  const v1::PlayRequest* request = nullptr;
+  PlaySlots::Tags superseded;
+  {
     const std::scoped_lock lock(mutex_);
-    return waiting_.front();
-  };
-  Result<void> answered = slots_.Answer(request(), send);
+    request = &waiting_.front();
+    if (request->tick().latest_only()) superseded = Superseded();
+  }
+  Result<void> answered = slots_.Answer(*request, superseded, send);
 
   std::unique_lock lock(mutex_);
   working_ = false;
@@ -90,11 +96,12 @@ void PlayStream::Work() {
 
 void PlayStream::Beat(Clock::time_point now) {
   std::unique_lock lock(mutex_);
+  if (now >= old_at_) StartDraining(kOldGrace, now);
   if (cut_off_ && now >= *cut_off_) End(Error{ErrorCode::kDraining, "the service has ended", {}});
   if (!working_ && !outcome_ && queued_bytes_ <= kQueuedBytes) {
     slots_.FollowRevisions([this](v1::PlayResponse answer) { Queue(std::move(answer)); });
   }
-  if (outgoing_.empty() && now - last_said_ >= kHeartbeat) {
+  if (!outcome_ && outgoing_.empty() && now - last_said_ >= kHeartbeat) {
     v1::PlayResponse heartbeat;
     heartbeat.mutable_heartbeat();
     Queue(std::move(heartbeat));
@@ -106,19 +113,37 @@ void PlayStream::Beat(Clock::time_point now) {
 
 void PlayStream::Drain(std::chrono::milliseconds stop_sending_in, Clock::time_point now) {
   std::unique_lock lock(mutex_);
-  if (!cut_off_) {
-    cut_off_ = now + stop_sending_in;
-    const auto seconds = std::chrono::floor<std::chrono::seconds>(stop_sending_in);
-    v1::PlayResponse draining;
-    auto* const duration = draining.mutable_draining()->mutable_stop_sending_in();
-    duration->set_seconds(seconds.count());
-    duration->set_nanos(
-        static_cast<std::int32_t>(std::chrono::nanoseconds(stop_sending_in - seconds).count()));
-    Queue(std::move(draining));
-  }
+  StartDraining(stop_sending_in, now);
   const Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
   Do(next);
+}
+
+// The first draining is said; a later one can only shorten it.
+void PlayStream::StartDraining(std::chrono::milliseconds stop_sending_in, Clock::time_point now) {
+  if (cut_off_) {
+    cut_off_ = std::min(*cut_off_, now + stop_sending_in);
+    return;
+  }
+  cut_off_ = now + stop_sending_in;
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(stop_sending_in);
+  v1::PlayResponse draining;
+  auto* const duration = draining.mutable_draining()->mutable_stop_sending_in();
+  duration->set_seconds(seconds.count());
+  duration->set_nanos(
+      static_cast<std::int32_t>(std::chrono::nanoseconds(stop_sending_in - seconds).count()));
+  Queue(std::move(draining));
+}
+
+// Items of the frames that wait behind the one to be answered.
+PlaySlots::Tags PlayStream::Superseded() const {
+  PlaySlots::Tags tags;
+  for (auto later = waiting_.begin() + 1; later != waiting_.end(); ++later) {
+    for (const v1::PlayRequest::Item& item : later->tick().items()) {
+      tags.emplace(item.slot(), item.tag());
+    }
+  }
+  return tags;
 }
 
 void PlayStream::Queue(v1::PlayResponse message) {

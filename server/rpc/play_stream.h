@@ -41,16 +41,21 @@ class PlayTransport {
 // A frame is in flight from being read until its result is written; at most max_in_flight are,
 // and nothing more is answered while kQueuedBytes wait to be written.  So a slow reader costs only
 // itself.  The stream ends when the client has said all and got its answers, by a breach of the
-// protocol, by cancellation, or when it outlives its draining.
+// protocol, by cancellation, or when it outlives its draining, which comes with its age at the
+// latest: gRPC has no greatest age of a stream, and new replicas would never get load.
 class PlayStream {
  public:
   using Clock = std::chrono::steady_clock;
 
   static constexpr std::size_t kQueuedBytes = 4 << 20;
   static constexpr std::chrono::seconds kHeartbeat{10};
+  static constexpr std::chrono::seconds kOldGrace{
+      30};                                     // in which the client of an old stream moves
   static constexpr double kShortWork = 100.0;  // microseconds that may pass on the reading thread
 
-  PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport);
+  // The stream drains by itself at its first beat after `old_at`.
+  PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport,
+             Clock::time_point old_at = Clock::time_point::max());
 
   // Says Welcome and begins to read.
   void Start();
@@ -60,7 +65,8 @@ class PlayStream {
   void OnCancelled();
   void Work();  // answers one message
 
-  // Says Heartbeat after a silence, and RevisionChanged without waiting for a frame.
+  // Says Heartbeat after a silence, RevisionChanged without waiting for a frame, and Draining when
+  // the stream is old.
   void Beat(Clock::time_point now);
 
   // Says Draining; a client that has not ended after the time is cut off.
@@ -74,6 +80,8 @@ class PlayStream {
   };
   enum class Next { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
 
+  PlaySlots::Tags Superseded() const;
+  void StartDraining(std::chrono::milliseconds stop_sending_in, Clock::time_point now);
   void Queue(v1::PlayResponse message);
   void End(Result<void> outcome);
   Next Advance(bool may_work_here);
@@ -81,6 +89,7 @@ class PlayStream {
 
   PlayTransport& transport_;
   const std::size_t max_in_flight_;
+  const Clock::time_point old_at_;
   PlaySlots slots_;  // used by whoever set working_, or under the lock while it is not set
 
   std::mutex mutex_;

@@ -76,8 +76,8 @@ grpc::ServerUnaryReactor* SessionService::PutShape(grpc::CallbackServerContext* 
   return ReplyFrom(pool_, context, "PutShape", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
     auto source = TRY(ShapeSourceFromProto(*request));
-    const auto drawing =
-        TRY(session->PutShape(request->shape_id(), std::move(source), request->replace()));
+    const auto drawing = TRY(session->PutShape(request->shape_id(), std::move(source),
+                                               request->replace(), request->flip()));
     ToProto(*drawing, response->mutable_shape());
     response->set_etag(session->View().etag);
     registry_.Trim();

@@ -67,6 +67,7 @@ grpc::StatusCode StatusCodeOf(ErrorCode code) {
     case ErrorCode::kShapeExists:
       return grpc::StatusCode::ALREADY_EXISTS;
     case ErrorCode::kEtagMismatch:
+    case ErrorCode::kSuperseded:
       return grpc::StatusCode::ABORTED;
     case ErrorCode::kNoShapes:
     case ErrorCode::kSessionNotBuilt:

@@ -32,6 +32,7 @@ struct Limits {
   int concurrent_builds = 2;
   int build_queue = 64;
   std::chrono::seconds build_timeout{120};
+  std::chrono::seconds max_stream_age{1'800};  // of a Play stream, give or take a tenth
 };
 
 }  // namespace posespace

@@ -15,13 +15,15 @@
 #include "drawing/png_file.h"
 #include "geometry/polygon.h"
 #include "interpolation/texture_weights.h"
+#include "session/interior_stage.h"
 #include "session/placements.h"
 
 namespace posespace {
 namespace {
 
-// The share of a build's progress that mapping takes; the weights take the rest.
-constexpr double kMappingShare = 0.9;
+// The shares of a build's progress that mapping and alignment take; the weights take the rest.
+constexpr double kMappingShare = 0.5;
+constexpr double kAlignmentShare = 0.4;
 
 // Larger weights are refused: they are no drawing, and their sums lose all digits.
 constexpr double kMaxWeight = 1e6;
@@ -66,8 +68,8 @@ std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& i
   for (std::size_t i = 0; i < report.confidence.size(); ++i) {
     if (mapping.proposal.flips[i]) {
       warnings.push_back("drawing '" + inputs.drawings[i]->id +
-                         "' seems to face the other way: suggest() shows it; if it does, put its "
-                         "mirror image");
+                         "' seems to face the other way: suggest() shows it; if it does, put it "
+                         "again with flip");
       continue;
     }
     if (report.confidence[i] >= kLeastConfidence || IsMarked(inputs, i)) continue;
@@ -278,8 +280,13 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inp
   auto mapping = TRY(MapShapes(MatchingShapesOf(inputs.drawings), inputs.landmarks, inputs.options,
                                &mapping_progress));
   auto warnings = WarningsOf(mapping, inputs);
+  constexpr double kMeshShare = kMappingShare + kAlignmentShare;
+  if (inputs.align) {
+    if (progress != nullptr) progress->EnterStage("alignment", kMappingShare, kMeshShare);
+    TRY(AlignMapping(inputs.drawings, &mapping, progress));
+  }
 
-  if (progress != nullptr) progress->EnterStage("weights", kMappingShare, 1.0);
+  if (progress != nullptr) progress->EnterStage("weights", kMeshShare, 1.0);
   auto blend = TRY(RigidBlend::Prepare(mapping.mesh));
   const std::shared_ptr<const Body> body(
       new Body{inputs.drawings, MeshDigest(inputs), std::move(mapping.mesh),

@@ -22,8 +22,9 @@ namespace posespace {
 // A drawing as it was uploaded and understood.  Immutable.
 struct Drawing {
   std::string id;
-  std::string digest;  // of the source and its options
-  double width = 0.0;  // drawing pixels
+  std::string digest;    // of the source, its options, and whether it is flipped
+  bool flipped = false;  // what follows is the mirror image of what was uploaded
+  double width = 0.0;    // drawing pixels
   double height = 0.0;
   Outline outline;
   // Either with its pixels, or, once kept by a session, with their number alone and the pixels as
@@ -48,6 +49,7 @@ struct BuildInputs {
   std::vector<Landmark> landmarks;
   Points placements;  // N x 2, row i the place of drawings[i] in pose space
   MappingOptions options;
+  bool align = true;  // inner vertices to what is drawn there (interior_stage.h)
 };
 
 // Digest of the inputs and the algorithm version, as lower-case hexadecimal: the mesh's inputs
@@ -90,7 +92,7 @@ struct Frame {
 // Immutable; share freely.  A blend takes no lock.
 class PoseSpace {
  public:
-  // Builds from scratch; reports stages of mapping and "weights" to `progress`.
+  // Builds from scratch; reports stages of mapping, "alignment" and "weights" to `progress`.
   //
   // Requires  every landmark has one entry a drawing.
   // Fails     kNoShapes, kSizeMismatch, as CheckPlacements (placements.h) before any work, and as

@@ -40,6 +40,7 @@ std::string MeshDigest(const BuildInputs& inputs) {
   digest.Add(static_cast<std::int64_t>(inputs.landmarks.size()));
   for (const Landmark& landmark : inputs.landmarks) AddLandmark(landmark, digest);
   AddOptions(inputs.options, digest);
+  digest.Add(static_cast<std::int64_t>(inputs.align));
   return digest.Hex();
 }
 

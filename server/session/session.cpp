@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "session/flip.h"
 #include "session/session_state.h"
 
 namespace posespace {
@@ -17,6 +18,16 @@ Error ShapeNotFound(const std::string& session_id, const std::string& shape_id) 
 
 std::int64_t PixelsOf(const Drawing& drawing) {
   return static_cast<std::int64_t>(drawing.texture.image.width) * drawing.texture.image.height;
+}
+
+// Moves the marks of a drawing to its mirror image.
+void FlipMarks(std::vector<Correspondence>& tuples, const std::string& shape_id,
+               double mirror_sum) {
+  for (Correspondence& tuple : tuples) {
+    if (const auto mark = tuple.find(shape_id); mark != tuple.end()) {
+      mark->second.x() = mirror_sum - mark->second.x();
+    }
+  }
 }
 
 std::int64_t PixelsOfOthers(const std::vector<std::shared_ptr<const Drawing>>& drawings,
@@ -97,7 +108,8 @@ std::string Session::etag() const {
 }
 
 Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shape_id,
-                                                         ShapeSource source, bool replace) {
+                                                         ShapeSource source, bool replace,
+                                                         bool flip) {
   TRY(CheckId("shape", shape_id));
 
   // The drawing that answers the call without any work, if it is there; else whether it may come.
@@ -121,15 +133,18 @@ Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shap
     return std::shared_ptr<const Drawing>();
   };
 
-  const std::string digest = SourceDigest(source);
+  const std::string straight = SourceDigest(source), flipped = FlippedDigest(straight);
+  const std::string& digest = flip ? flipped : straight;
   std::int64_t pixels_left = limits_.max_session_pixels;
   {
     const std::lock_guard lock(state_->mutex);
     if (auto known = TRY(precheck(digest))) return known;
     pixels_left -= PixelsOfOthers(state_->content.drawings, shape_id);
   }
-  const auto drawing = std::make_shared<const Drawing>(
-      Packed(TRY(ReadDrawing(shape_id, source, limits_, pixels_left))));
+  Drawing read = TRY(ReadDrawing(shape_id, source, limits_, pixels_left));
+  const double mirror_sum = MirrorSum(source, read);
+  if (flip) read = Flipped(std::move(read), mirror_sum);
+  const auto drawing = std::make_shared<const Drawing>(Packed(std::move(read)));
 
   const std::lock_guard edit(state_->editing);
   {
@@ -146,6 +161,9 @@ Result<std::shared_ptr<const Drawing>> Session::PutShape(const std::string& shap
     return Error{ErrorCode::kImageTooLarge, message, {{"shape_id", message}}};
   }
   if (const std::ptrdiff_t at = next.Find(shape_id); at >= 0) {
+    if (next.drawings[at]->digest == (flip ? straight : flipped)) {
+      FlipMarks(next.correspondences, shape_id, mirror_sum);
+    }
     next.drawings[at] = drawing;
   } else {
     next.drawings.push_back(drawing);

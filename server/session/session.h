@@ -23,6 +23,7 @@ namespace posespace {
 struct BuildRequest {
   double tolerance = 0.03;           // 0.001 .. 0.2
   double target_edge_length = 0.08;  // 0.02 .. 1
+  bool align = true;                 // inner vertices to what is drawn there
 };
 
 // What automatic matching would do with a session's drawings and marks.
@@ -76,14 +77,14 @@ class Session {
   SessionView View() const;
   std::string etag() const;
 
-  // Decodes and traces a drawing and keeps it.  The same source again under the same id is answered
-  // as before; another one needs `replace`, and takes the old one's place in the order.  Marks and
-  // placement stay with the id; marks that the new drawing does not bear are refused by the next
-  // build.
-  // Fails  kShapeExists, kTooManyShapes, kInvalidId, kImageTooLarge (also for all drawings
+  // Decodes and traces a drawing, flips it if asked (flip.h), and keeps it.  The same source again
+  // under the same id is answered as before; another one needs `replace`, and takes the old one's
+  // place in the order.  Marks and placement stay with the id, and marks move with a drawing that
+  // is only flipped; those that a new drawing does not bear are refused by the next build. Fails
+  // kShapeExists, kTooManyShapes, kInvalidId, kImageTooLarge (also for all drawings
   //        together), and as ReadDrawing (upload.h).
   Result<std::shared_ptr<const Drawing>> PutShape(const std::string& shape_id, ShapeSource source,
-                                                  bool replace);
+                                                  bool replace, bool flip = false);
   Result<std::shared_ptr<const Drawing>> FindShape(const std::string& shape_id) const;
   std::vector<std::shared_ptr<const Drawing>> Shapes() const;
 

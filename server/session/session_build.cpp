@@ -31,6 +31,7 @@ Result<BuildStatus> Session::StartBuild(const BuildRequest& request, BuildPool& 
   const std::lock_guard edit(state_->editing);
   BuildInputs inputs;
   inputs.options = TRY(OptionsOf(request, limits_));
+  inputs.align = request.align;
   const State::Content content = TRY(state_->ContentToEdit(""));
   if (content.drawings.empty()) {
     return Error{ErrorCode::kNoShapes, "session '" + id_ + "' has no drawing to build from", {}};

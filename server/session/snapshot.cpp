@@ -97,6 +97,9 @@ void Write(const MappingReport& report, ByteWriter& out) {
       .Add(report.min_angle);
   out.AddEach(report.confidence, [&](double value) { out.Add(value); });
   out.AddEach(report.seconds, [&](const auto& stage) { out.Add(stage.first).Add(stage.second); });
+  for (const auto* ghosts : {&report.ghosts_before, &report.ghosts_after}) {
+    out.AddEach(*ghosts, [&](double value) { out.Add(value); });
+  }
 }
 
 MappingReport ReadMappingReport(ByteReader& in) {
@@ -110,6 +113,9 @@ MappingReport ReadMappingReport(ByteReader& in) {
     std::string stage = in.Text();
     report.seconds.emplace_back(std::move(stage), in.Real());
   });
+  for (auto* ghosts : {&report.ghosts_before, &report.ghosts_after}) {
+    in.ReadEach([&] { ghosts->push_back(in.Real()); });
+  }
   return report;
 }
 
@@ -193,7 +199,8 @@ Result<SessionRecord> SessionRecordFromBytes(std::span<const std::uint8_t> bytes
 
 Bytes ToBytes(const Drawing& drawing) {
   ByteWriter out;
-  out.Add(drawing.digest).Add(drawing.width).Add(drawing.height);
+  out.Add(drawing.digest).Add(std::int64_t{drawing.flipped});
+  out.Add(drawing.width).Add(drawing.height);
   const Outline& outline = drawing.outline;
   out.Add(outline.outer);
   out.AddEach(outline.holes, [&](const Points& hole) { out.Add(hole); });
@@ -215,6 +222,7 @@ Result<Drawing> DrawingFromBytes(const DrawingName& name, std::span<const std::u
   drawing.id = name.id;
   drawing.digest = in.Text();
   if (drawing.digest != name.digest) in.Fail();
+  drawing.flipped = in.Integer() != 0;
   drawing.width = in.Real();
   drawing.height = in.Real();
   Outline& outline = drawing.outline;

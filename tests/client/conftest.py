@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One real posespaced for all tests that leave it alive, and a built session to read from."""
+"""An empty session to write to, and a built one to read from."""
 
 from __future__ import annotations
 
@@ -7,19 +7,7 @@ from collections.abc import Iterator
 
 import posespace
 import pytest
-from synthetic_drawings import WALK, figure
-
-
-@pytest.fixture(scope="session")
-def server() -> Iterator[posespace.LocalServer]:
-    with posespace.serve_locally() as running:
-        yield running
-
-
-@pytest.fixture(scope="session")
-def client(server: posespace.LocalServer) -> Iterator[posespace.Client]:
-    with posespace.connect(server.address, timeout=10.0) as connected:
-        yield connected
+from walk_session import make_walk
 
 
 @pytest.fixture
@@ -30,16 +18,6 @@ def session(client: posespace.Client) -> Iterator[posespace.Session]:
     client_has_it = any(other.id == made.id for other in client.sessions())
     if client_has_it:
         made.delete()
-
-
-def make_walk(client: posespace.Client, session_id: str | None = None) -> posespace.Session:
-    """A built session of three figures on a bent line in pose space."""
-    session = client.create_session(session_id)
-    for name, pose in WALK.items():
-        session.put_shape(name, image=figure(**pose))
-    session.set_placements({"stand": (0, 0), "step": (1, 0.2), "wave": (0.4, 1)})
-    session.build()
-    return session
 
 
 @pytest.fixture(scope="session")

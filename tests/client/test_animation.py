@@ -9,8 +9,8 @@ import time
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from synthetic_drawings import star
+from walk_session import make_walk
 
 PATH = [(0, 0), (1, 0.2), (0.4, 1)]
 

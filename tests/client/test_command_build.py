@@ -16,7 +16,14 @@ from PIL import Image
 from synthetic_drawings import WALK, figure, png_of, star
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = {"report.levels", "report.seconds", "report.confidence", "labels"}  # by names
+MAPS = {
+    "report.levels",
+    "report.seconds",
+    "report.confidence",
+    "report.ghost_loss",
+    "report.ghost_losses",
+    "labels",
+}  # by names
 
 
 @pytest.fixture(scope="module")

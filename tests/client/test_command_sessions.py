@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 from command_line import answer, refusal, run
-from conftest import make_walk
 from synthetic_drawings import star
+from walk_session import make_walk
 
 
 def test_inspect_says_everything_about_a_built_session(server, walk):

@@ -10,9 +10,9 @@ import threading
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from PIL import Image
 from synthetic_drawings import WALK, figure, png_of, star
+from walk_session import make_walk
 
 NAN = float("nan")
 CARD = figure(**WALK["stand"])

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from synthetic_drawings import star, wavy_blob
+from walk_session import make_walk
 
 TIMEOUT = 3.0  # of the clients here; what hangs is given up after it
 SLACK = 20.0  # that a busy machine may add to it

@@ -5,10 +5,7 @@ from __future__ import annotations
 
 import gzip
 import io
-import json
-import os
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import posespace
@@ -17,7 +14,6 @@ from numpy.typing import NDArray
 from PIL import Image
 from synthetic_drawings import WALK, figure, star
 
-ROOT = Path(__file__).resolve().parents[2]
 CARD = figure(**WALK["stand"])
 LIMITS = ("IMAGE_UNDECODABLE", "IMAGE_TOO_LARGE", "OUTLINE_EMPTY", "OUTLINE_TOO_SMALL")
 
@@ -237,34 +233,6 @@ def test_a_threshold_of_an_svg_is_named_by_its_path(session):
 def test_two_sources_at_once_are_refused(session):
     with pytest.raises(posespace.InvalidArgument, match="svg"):
         session.put_shape("kite", svg=svg_of(KITE), polygon=star())
-
-
-# Development drawings that need something done to them.
-
-SHAPES = Path(os.environ.get("POSESPACE_SHAPES", ROOT.parent / "shared" / "shapes"))
-with_shapes = pytest.mark.skipif(
-    not (SHAPES / "index.json").is_file(), reason=f"no drawings at {SHAPES}; set POSESPACE_SHAPES"
-)
-
-
-@with_shapes
-def test_letters_that_cross_themselves_are_repaired_and_build(session):
-    for file in sorted((SHAPES / "glyph/recursive-negative-S").glob("*.json")):
-        shape = session.put_shape(file.stem, polygon=json.loads(file.read_text())["outer"])
-        assert any("non-zero rule" in word for word in shape.warnings)
-    session.build()
-
-
-@with_shapes
-def test_chess_men_lose_their_page_or_it_is_told(session):
-    for file in sorted((SHAPES / "vector/openclipart-chess").glob("*.svg")):
-        shape = session.put_shape(file.stem, svg=file)
-        assert any("its paper" in word for word in shape.warnings)
-        width, height = shape.size
-        assert area(shape.outline[0]) < 0.65 * width * height
-        page = json.loads(file.with_suffix(".json").read_text())["outer"]
-        shape = session.put_shape(f"{file.stem}-page", polygon=page)
-        assert any("page around a drawing" in word for word in shape.warnings)
 
 
 # Hostile files.

@@ -10,8 +10,8 @@ import time
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from synthetic_drawings import star
+from walk_session import make_walk
 
 NAN = float("nan")
 
@@ -268,3 +268,45 @@ def test_many_streams_play_at_once(walk):
     for thread in threads:
         thread.join()
     assert not wrong
+
+
+@pytest.fixture
+def short_lived():
+    """A service whose streams are old after a second."""
+    with posespace.serve_locally(flags=["--max-stream-age", "1"]) as server:
+        yield server
+
+
+def test_a_player_outlives_its_streams(short_lived):
+    with posespace.connect(short_lived.address) as client:
+        session = make_walk(client)
+        mesh = session.mesh()
+        with session.play() as player:
+            pinned = player.bind(session, revision=mesh.revision)
+            first_stream, end = player._stream, time.monotonic() + 5.0
+            while player._stream is first_stream and time.monotonic() < end:
+                frames = list(player.frames([(0, 0)] * 9))
+                for frame in frames:
+                    assert np.abs(frame.vertices - mesh.vertices["stand"]).max() < 1e-2
+                time.sleep(0.01)
+            assert player._stream is not first_stream
+            (frame,) = player.tick([pinned.item(at=(1, 0.2))])
+            assert np.abs(frame.vertices - mesh.vertices["step"]).max() < 1e-2
+
+
+def test_a_session_deleted_before_the_stream_is_left_errs_alone(short_lived):
+    with posespace.connect(short_lived.address) as client:
+        session, other = make_walk(client), make_walk(client)
+        with session.play() as player:
+            gone = player.bind(other)
+            other.delete()
+            first_stream, end = player._stream, time.monotonic() + 5.0
+            while player._stream is first_stream and time.monotonic() < end:
+                kept, lost = player.tick([player.avatar.item(at=(0, 0)), gone.item(at=(0, 0))])
+                assert isinstance(kept, posespace.Frame)
+                assert isinstance(lost, posespace.NotFound)
+                time.sleep(0.01)
+            assert player._stream is not first_stream
+            kept, lost = player.tick([player.avatar.item(at=(0, 0)), gone.item(at=(0, 0))])
+            assert isinstance(kept, posespace.Frame)
+            assert isinstance(lost, posespace.NotFound)

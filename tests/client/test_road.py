@@ -8,8 +8,8 @@ import math
 import numpy as np
 import posespace
 import pytest
-from conftest import make_walk
 from synthetic_drawings import WALK, figure, png_of, star
+from walk_session import make_walk
 
 STAND = figure(**WALK["stand"])
 
@@ -119,6 +119,18 @@ def test_a_finer_mesh_is_built_on_request(session):
     fine = session.build(target_edge_length=0.05)
     assert fine.triangles > 4 * coarse.triangles
     assert fine.revision != coarse.revision
+
+
+def test_alignment_is_on_unless_switched_off_and_reports_its_gain(session):
+    for name, pose in WALK.items():
+        session.put_shape(name, image=figure(**pose))
+    aligned = session.build()
+    assert set(aligned.ghost_losses) == set(WALK)
+    assert 0 <= aligned.ghost_loss.after <= aligned.ghost_loss.before < 1
+    unaligned = session.build(align=False)
+    assert unaligned.ghost_loss is None and unaligned.ghost_losses == {}
+    assert unaligned.revision != aligned.revision
+    assert session.build(align=True).revision == aligned.revision
 
 
 def test_marked_places_become_vertices_of_the_mesh(session):

@@ -101,3 +101,28 @@ def test_it_is_stopped_with_the_caller(session):
     with pytest.raises(posespace.DeadlineExceeded):
         session.suggest(timeout=0.05)
     session.delete()
+
+
+def test_an_accepted_flip_is_kept_and_settles_the_matter(session):
+    put_waves(session, mirrored="b")
+    backwards = figure(**WAVES["b"])[:, ::-1]
+    shape = session.put_shape("b", image=backwards, flip=True, replace=True)
+    assert shape.flipped and session.shape("b").flipped and not session.shape("a").flipped
+    found = session.suggest()
+    assert found.flips == []
+    assert not any("the other way" in warning for warning in session.build().warnings)
+    straight = figure(**WAVES["b"])
+    assert np.array_equal(session.texture("b")[..., 3] > 0, straight[..., 3] > 0)
+
+
+def test_marks_move_with_a_drawing_that_is_flipped(session):
+    session.put_shape("a", polygon=star())
+    session.put_shape("b", polygon=star())
+    x, y = session.shape("b").outline[0][3]
+    session.set_correspondences([{"b": (x, y)}])
+    session.put_shape("b", polygon=star(), flip=True, replace=True)
+    ring = star()
+    middle = (ring[:, 0].min() + ring[:, 0].max()) / 2
+    (moved,) = session.state().correspondences
+    assert moved["b"] == pytest.approx((2 * middle - x, y))
+    session.build()

@@ -17,6 +17,8 @@ REVIEWED = {
     r"libgrpc(\+\+)?|libgrpc\+\+_reflection|libgpr|libaddress_sorting|libabsl_\w+": "Apache-2.0",
     r"libupb|libprotobuf|libre2": "BSD-3-Clause",
     r"libssl|libcrypto|libtbb|libopencv_core|libopencv_imgproc": "Apache-2.0",
+    r"libopencv_video|libopencv_dnn|libopencv_calib3d|libopencv_features2d": "Apache-2.0",
+    r"libopencv_flann": "BSD-3-Clause",
     r"libspdlog|libfmt|libcares|libX11|libXau|libXdmcp|libxcb|libGLX|libGLdispatch": "MIT",
     r"libGL|libOpenGL|libEGL": "MIT",
     r"libblas|liblapack|libopenblas": "BSD-3-Clause",

@@ -142,7 +142,7 @@ TEST_F(AnimateTest, EndsWhenTheCallerGoesAway) {
     const auto reader = client_.poses->Animate(context.get(), request);
     v1::AnimateResponse frame;
     ASSERT_TRUE(reader->Read(&frame));
-    EXPECT_EQ(server_->open_streams(), 1u);
+    EXPECT_GE(server_->open_streams(), 1u);
     context->TryCancel();
     EXPECT_EQ(reader->Finish().error_code(), StatusCode::CANCELLED);
   }

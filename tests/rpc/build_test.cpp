@@ -65,6 +65,38 @@ TEST_F(BuildTest, SameInputsReturnTheFinishedBuild) {
   EXPECT_EQ(again.report().revision(), revision);
 }
 
+TEST_F(BuildTest, AlignsInsidesUnlessToldNotToAndSaysWhatItGained) {
+  // A disc with a spot that lies elsewhere in each drawing.
+  const auto spotted = [](double x) {
+    Image image = PictureOf(200, 200);
+    PaintDisc(&image, 100, 100, 80, kRed);
+    PaintDisc(&image, x, 100, 20, kWhite);
+    const auto png = EncodePng(image);
+    return std::string(png.begin(), png.end());
+  };
+  Create("dice");
+  Put(PutImage("dice", "left", spotted(90)));
+  Put(PutImage("dice", "right", spotted(110)));
+  StartBuild("dice");
+  const v1::BuildReport aligned = Watch("dice").back().report();
+  EXPECT_GT(aligned.ghost_loss().before(), 0.1);
+  EXPECT_LT(aligned.ghost_loss().after(), 0.5 * aligned.ghost_loss().before());
+  ASSERT_EQ(aligned.ghost_losses_size(), 2);
+  EXPECT_LT(aligned.ghost_losses().at("left").after(), aligned.ghost_losses().at("left").before());
+  EXPECT_TRUE(aligned.seconds().contains("alignment"));
+
+  v1::StartBuildRequest plain;
+  plain.set_session_id("dice");
+  plain.mutable_options()->set_align(false);
+  v1::StartBuildResponse started;
+  ASSERT_THAT(client_.Call(&SessionStub::StartBuild, plain, &started), Succeeds());
+  const v1::BuildReport unaligned = Watch("dice").back().report();
+  EXPECT_FALSE(unaligned.has_ghost_loss());
+  EXPECT_EQ(unaligned.ghost_losses_size(), 0);
+  EXPECT_FALSE(unaligned.seconds().contains("alignment"));
+  EXPECT_NE(unaligned.revision(), aligned.revision());
+}
+
 TEST_F(BuildTest, AReconnectLosesAndRepeatsNothing) {
   Built("tux");
   const auto all = Watch("tux");

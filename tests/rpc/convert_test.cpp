@@ -113,11 +113,14 @@ TEST(Placements, RefuseAMissingPlaceAndAShapePlacedTwice) {
 TEST(BuildOptions, AreTheDefaultsWhereAbsent) {
   EXPECT_EQ(BuildRequestFromProto({}).tolerance, 0.03);
   EXPECT_EQ(BuildRequestFromProto({}).target_edge_length, 0.08);
+  EXPECT_TRUE(BuildRequestFromProto({}).align);
   v1::BuildOptions options;
   options.set_tolerance(0.05);
   options.set_target_edge_length(0.5);
+  options.set_align(false);
   EXPECT_EQ(BuildRequestFromProto(options).tolerance, 0.05);
   EXPECT_EQ(BuildRequestFromProto(options).target_edge_length, 0.5);
+  EXPECT_FALSE(BuildRequestFromProto(options).align);
 }
 
 TEST(SessionView, TravelsWhole) {

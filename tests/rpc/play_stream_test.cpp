@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -17,6 +18,7 @@ namespace posespace {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::ElementsAre;
 using Clock = PlayStream::Clock;
 
 // Everything a stream asks for, kept until the test lets it happen.
@@ -459,6 +461,87 @@ TEST_F(Play, AnswersWhileItDrainsAndEndsWhenTheClientEnds) {
   SayAll();
   EXPECT_TRUE(wire_.finished);
   EXPECT_FALSE(wire_.error);
+}
+
+TEST_F(Play, DrainsWhenItIsOld) {
+  const auto born = Clock::now();
+  Wire wire;
+  PlayStream stream(sessions_.registry(), {}, wire, born + 5s);
+  stream.Start();
+  const auto take = [&] {
+    const v1::PlayResponse message = *std::exchange(wire.writing, nullptr);
+    stream.OnWritten(true);
+    return message;
+  };
+  EXPECT_TRUE(take().has_welcome());
+  stream.Beat(born + 4s);
+  EXPECT_EQ(wire.writing, nullptr);
+  stream.Beat(born + 5s);
+  EXPECT_EQ(take().draining().stop_sending_in().seconds(), PlayStream::kOldGrace.count());
+  stream.Beat(born + 4s + PlayStream::kOldGrace);
+  EXPECT_TRUE(take().has_heartbeat());
+  EXPECT_FALSE(wire.finished);
+  stream.Beat(born + 5s + PlayStream::kOldGrace);
+  EXPECT_TRUE(wire.finished);
+  EXPECT_EQ(wire.error, ErrorCode::kDraining);
+}
+
+TEST_F(Play, AServiceThatEndsShortensTheTimeOfAnOldStream) {
+  const auto now = Clock::now();
+  stream_.Drain(60s, now);
+  stream_.Drain(1s, now);
+  TakeAll();
+  stream_.Beat(now + 1s);
+  EXPECT_TRUE(wire_.finished);
+}
+
+TEST_F(Play, LatestOnlyDropsWhatALaterFrameAsksForAgain) {
+  BindSlot0();
+  const auto tagged = [](std::uint64_t frame_id, const std::vector<std::uint32_t>& tags) {
+    v1::PlayRequest request = Tick(frame_id, std::vector<std::uint32_t>(tags.size(), 0));
+    request.mutable_tick()->set_latest_only(true);
+    for (int k = 0; k < request.tick().items_size(); ++k) {
+      request.mutable_tick()->mutable_items(k)->set_tag(tags[static_cast<std::size_t>(k)]);
+    }
+    return request;
+  };
+  const auto said = [&] {  // frame id, and its items' reasons
+    std::vector<std::pair<std::uint64_t, std::vector<std::string>>> results;
+    for (const auto& message : TakeAll()) {
+      if (!message.has_frame_result()) continue;
+      std::vector<std::string> reasons;
+      for (const auto& item : message.frame_result().items()) {
+        EXPECT_EQ(item.has_frame(), item.reason().empty());
+        reasons.push_back(item.reason());
+      }
+      EXPECT_EQ(message.frame_result().superseded(),
+                std::count(reasons.begin(), reasons.end(), "SUPERSEDED"));
+      results.emplace_back(message.frame_result().frame_id(), reasons);
+    }
+    return results;
+  };
+  // A frame of many items waits for a thread, and the others behind it.
+  const std::vector<std::uint32_t> crowd(50, 7);
+  Say(tagged(1, crowd));
+  ASSERT_TRUE(wire_.work);
+  Say(tagged(2, {1, 2}));
+  Say(tagged(3, {2, 3}));
+  const auto results = said();
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_EQ(results[0].second, std::vector<std::string>(50, ""));
+  EXPECT_THAT(results[1].second, ElementsAre("", "SUPERSEDED"));
+  EXPECT_THAT(results[2].second, ElementsAre("", ""));
+}
+
+TEST_F(Play, AnswersEveryFrameUnlessOnlyTheLatestIsWanted) {
+  BindSlot0();
+  Say(Tick(1, std::vector<std::uint32_t>(50, 0)));
+  Say(Tick(2, {0}));
+  Say(Tick(3, {0}));
+  for (const auto& message : TakeAll()) {
+    EXPECT_EQ(message.frame_result().superseded(), 0u);
+    for (const auto& item : message.frame_result().items()) EXPECT_EQ(item.reason(), "");
+  }
 }
 
 TEST_F(Play, CutsOffAClientThatOutstaysTheDraining) {

@@ -73,7 +73,7 @@ TEST(BuildJob, BuildsAndTellsItsStoryInOrder) {
     }
   }
   EXPECT_THAT(stages, testing::ElementsAre("matching", "simplification", "triangulation",
-                                           "improvement", "weights"));
+                                           "improvement", "alignment", "weights"));
 }
 
 TEST(BuildJob, TellsWhyItFailed) {

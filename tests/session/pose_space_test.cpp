@@ -281,8 +281,8 @@ TEST(PoseSpace, ReportsItsStagesInOrder) {
   });
   const auto space = PoseSpace::Build(CreatureInputs(2), &progress);
   ASSERT_THAT(space, Succeeds());
-  const std::vector<std::string> expected = {"matching", "simplification", "triangulation",
-                                             "improvement", "weights"};
+  const std::vector<std::string> expected = {"matching",    "simplification", "triangulation",
+                                             "improvement", "alignment",      "weights"};
   EXPECT_EQ(stages, expected);
   EXPECT_GE(last, 0.9);
 
@@ -342,7 +342,7 @@ TEST(PoseSpace, StopsWhenCancelled) {
 
 TEST(PoseSpace, StopsInAnyStage) {
   for (const char* stage :
-       {"matching", "simplification", "triangulation", "improvement", "weights"}) {
+       {"matching", "simplification", "triangulation", "improvement", "alignment", "weights"}) {
     Progress* self = nullptr;
     Progress progress([&](std::string_view entered, double) {
       if (entered == stage) self->Cancel();
@@ -388,7 +388,7 @@ TEST(PoseSpace, IsBlendedByManyThreadsAlike) {
 
 TEST(RevisionDigest, DependsOnEveryInput) {
   const BuildInputs base = CreatureInputs(2);
-  std::vector<BuildInputs> others(9, base);
+  std::vector<BuildInputs> others(10, base);
   others[0].drawings.pop_back();
   std::swap(others[1].drawings[0], others[1].drawings[1]);
   auto renamed = *base.drawings[0];
@@ -402,9 +402,10 @@ TEST(RevisionDigest, DependsOnEveryInput) {
   others[6].options.simplification.tolerance += 1e-12;
   others[7].options.improvement.target_edge_length += 1e-12;
   others[8].options.triangulation.seed += 1;
+  others[9].align = false;
   std::set<std::string> digests = {MeshDigest(base)};
   for (const BuildInputs& other : others) digests.insert(MeshDigest(other));
-  EXPECT_EQ(digests.size(), 10u);
+  EXPECT_EQ(digests.size(), 11u);
 
   BuildInputs moved = base;
   moved.placements(0, 0) += 1e-12;

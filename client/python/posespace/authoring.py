@@ -68,6 +68,7 @@ class Authoring:
         polygon: ArrayLike | None = None,
         holes: Sequence[ArrayLike] = (),
         texture: Picture | None = None,
+        flip: bool = False,
         replace: bool = False,
     ) -> Shape:
         """Adds a drawing and answers how it was understood.
@@ -89,6 +90,10 @@ class Authoring:
         polygon     Ring (K, 2) in drawing pixels, either orientation; `holes` likewise.  A ring
                     that crosses itself is filled by the non-zero rule and traced anew.
         texture     Picture whose pixels are the polygon's drawing pixels; one colour without it.
+        flip        Keep its mirror image, as accepted from `suggest`: left and right exchanged
+                    about the middle of the picture, or of the polygon's box when it has none.
+                    Outline, marks and mesh are then in the mirror image's coordinates; marks in
+                    the same drawing unflipped move with it.
         replace     Overwrite a drawing of the same id.
 
         Whatever was done to the drawing is said in the answer's `warnings`.
@@ -100,6 +105,7 @@ class Authoring:
             session_service_pb2.PutShapeRequest,
             session_id=self._id,
             shape_id=shape_id,
+            flip=flip,
             replace=replace,
         )
         options = {"foreground": messages.foreground(foreground), "threshold": threshold}
@@ -178,7 +184,7 @@ class Authoring:
             found = session.suggest()
             for shape_id in found.flips:                 # they seem to face the other way:
                 show(shape_id, found.confidence, found.arcs, found.starts)    # ask a person, then
-                session.put_shape(shape_id, image=mirrored[shape_id], replace=True)
+                session.put_shape(shape_id, image=..., flip=True, replace=True)
 
         Nothing is changed: flips are proposals, which are wrong for a drawing that only looks as if
         it faced the other way.
@@ -224,6 +230,7 @@ class Authoring:
         *,
         tolerance: float | None = None,
         target_edge_length: float | None = None,
+        align: bool | None = None,
         on_progress: OnProgress | None = None,
         timeout: float | None = None,
     ) -> BuildReport:
@@ -234,6 +241,8 @@ class Authoring:
         tolerance           Farthest the mesh outline may lie from the drawing's, relative to the
                             square root of its area, 0.001 to 0.2; 0.03 by default.
         target_edge_length  Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
+        align               Whether inner vertices move so that what is drawn inside corresponds,
+                            eyes to eyes; report.ghost_loss says what it gained.  True by default.
         on_progress         Called with the stage's name and the fraction done, which never falls.
         timeout             Seconds to wait; by default as long as the service lets a build take.
 
@@ -247,14 +256,18 @@ class Authoring:
         contradict each other, Cancelled when somebody cancels or replaces the build,
         ResourceExhausted when the queue stays full for `timeout`, DeadlineExceeded after it.
         """
-        request = self._build_request(tolerance, target_edge_length)
+        request = self._build_request(tolerance, target_edge_length, align)
         return build_and_wait(self._channel, request, on_progress, timeout)
 
     def start_build(
-        self, *, tolerance: float | None = None, target_edge_length: float | None = None
+        self,
+        *,
+        tolerance: float | None = None,
+        target_edge_length: float | None = None,
+        align: bool | None = None,
     ) -> Build:
         """Starts building as `build` does and returns at once; `state().build` says how it goes."""
-        request = self._build_request(tolerance, target_edge_length)
+        request = self._build_request(tolerance, target_edge_length, align)
         return messages.build(self._channel.call(self._channel.sessions.StartBuild, request).build)
 
     def cancel_build(self) -> None:
@@ -265,11 +278,12 @@ class Authoring:
         )
 
     def _build_request(
-        self, tolerance: float | None, target_edge_length: float | None
+        self, tolerance: float | None, target_edge_length: float | None, align: bool | None
     ) -> session_service_pb2.StartBuildRequest:
         options = messages.make(
             session_service_pb2.BuildOptions,
             tolerance=tolerance,
             target_edge_length=target_edge_length,
+            align=align,
         )
         return session_service_pb2.StartBuildRequest(session_id=self._id, options=options)

@@ -203,6 +203,7 @@ def shape(message: session_service_pb2.Shape) -> results.Shape:
         holes_filled=message.holes_filled,
         warnings=list(message.warnings),
         texture=_texture(message.texture),
+        flipped=message.flipped,
     )
 
 
@@ -234,7 +235,13 @@ def report(message: geometry_pb2.BuildReport) -> results.BuildReport:
         seconds=dict(message.seconds),
         confidence=dict(message.confidence),
         warnings=list(message.warnings),
+        ghost_loss=_ghost_loss(message.ghost_loss) if message.HasField("ghost_loss") else None,
+        ghost_losses={key: _ghost_loss(loss) for key, loss in message.ghost_losses.items()},
     )
+
+
+def _ghost_loss(message: geometry_pb2.GhostLoss) -> results.GhostLoss:
+    return results.GhostLoss(before=message.before, after=message.after)
 
 
 def build(message: session_service_pb2.Build) -> results.Build:

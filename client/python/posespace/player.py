@@ -3,27 +3,17 @@
 
 from __future__ import annotations
 
-import queue
-import threading
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-import grpc
-
 from posespace import messages
 from posespace.channel import Channel
-from posespace.errors import (
-    Conflict,
-    DeadlineExceeded,
-    Error,
-    NotFound,
-    Unavailable,
-    error_of_reason,
-)
+from posespace.errors import Conflict, Error, NotBuilt, NotFound, Unavailable, error_of_reason
 from posespace.messages import BlendMethod, Place, ShearLimit
+from posespace.play_stream import PlayStream
 from posespace.results import Frame
 from posespace.v1 import pose_service_pb2
 
@@ -41,9 +31,10 @@ class Avatar:
     shape_ids          Drawings, in the order of weights.
     """
 
-    def __init__(self, session_id: str, slot: int) -> None:
+    def __init__(self, session_id: str, slot: int, pinned: str = "") -> None:
         self.session_id = session_id
         self.slot = slot
+        self._pinned = pinned  # a revision to stay with
         self.revision = ""
         self.vertex_count = 0
         self.shape_ids: list[str] = []
@@ -63,6 +54,15 @@ class Avatar:
         query = messages.query(at, weights, self.shape_ids, options)
         message = pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query)
         return Item(self, message, None if weights is None else self.shape_ids)
+
+    def _bind_message(self) -> pose_service_pb2.PlayRequest:
+        bind = messages.make(
+            pose_service_pb2.PlayRequest.Bind,
+            slot=self.slot,
+            session_id=self.session_id,
+            pinned_revision=self._pinned,
+        )
+        return pose_service_pb2.PlayRequest(bind=bind)
 
     def _follow(self, message: Any) -> None:
         self.revision = message.revision
@@ -113,6 +113,9 @@ class Player:
             for frame in player.tick([avatar.item(at=(0, 0.5)) for avatar in crowd]):
                 ...
 
+    When the service wants the stream to end (it ends itself, or the stream is old), what is under
+    way is still answered, and the player goes on over a new stream if it gets one.
+
     avatar     The session that play() was called on.
     max_slots, max_items, max_in_flight
                Limits of the stream: sessions bound, items in a tick, frames under way at once.
@@ -120,28 +123,12 @@ class Player:
 
     def __init__(self, channel: Channel, session_id: str, revision: str) -> None:
         self._channel = channel
-        self._outgoing: queue.SimpleQueue[pose_service_pb2.PlayRequest | None] = queue.SimpleQueue()
-        self._incoming: queue.SimpleQueue[pose_service_pb2.PlayResponse | Error] = (
-            queue.SimpleQueue()
-        )
         self._avatars: dict[int, Avatar] = {}
         self._asked: dict[int, list[Item]] = {}  # frames under way
         self._answers: dict[int, list[Frame | Error]] = {}  # here, and not yet their turn
         self._next_frame_id = 1
-        self._said = threading.Lock()  # guards the three below: what was said, and what is owed
-        self._unanswered = 0
-        self._stop_sending_at: float | None = None  # the service ends
-        self._said_all = False
-        self._ended: Error | None = None
-
-        self._call = channel.begin(channel.poses.Play, iter(self._outgoing.get, None))
-        self._reader = threading.Thread(target=self._read, name="posespace-play", daemon=True)
-        self._reader.start()
+        self._stream = self._open()
         try:
-            welcome = self._receive(time.monotonic() + channel.timeout).welcome
-            self.max_slots: int = welcome.max_slots
-            self.max_items: int = welcome.max_items
-            self.max_in_flight: int = welcome.max_in_flight
             self.avatar = self._bind(session_id, revision)
         except BaseException:
             self.close()
@@ -160,11 +147,7 @@ class Player:
 
     def close(self) -> None:
         """Ends the stream; what is still under way is lost."""
-        if self._ended is None:
-            self._ended = Unavailable("the player is closed")
-        self._outgoing.put(None)
-        self._reader.join(timeout=0.5)  # ended by the service, if it has nothing left to answer
-        self._call.cancel()
+        self._stream.close()
 
     def bind(self, session: Session, *, revision: str = "") -> Avatar:
         """Adds a session to the stream.
@@ -205,7 +188,8 @@ class Player:
 
         Raises the errors of Session.blend for a point that cannot be answered (the stream goes on),
         NotFound once the session was deleted, DeadlineExceeded when a frame takes longer than the
-        client's timeout, Unavailable when the service ends (DRAINING: it said so in time).
+        client's timeout, Unavailable when the service ends (DRAINING: it said so in time) and no
+        other takes its place.
         """
         avatar = avatar or self.avatar
         options = messages.blend_options(method, shear_limit, refits, sigma)
@@ -251,29 +235,50 @@ class Player:
             for frame_id in asked:
                 self._forget(frame_id)
 
+    def _open(self) -> PlayStream:
+        stream = PlayStream(self._channel)
+        self.max_slots: int = stream.welcome.max_slots
+        self.max_items: int = stream.welcome.max_items
+        self.max_in_flight: int = stream.welcome.max_in_flight
+        return stream
+
     def _bind(self, session_id: str, revision: str) -> Avatar:
         slot = next(slot for slot in range(len(self._avatars) + 1) if slot not in self._avatars)
-        self._send(
-            pose_service_pb2.PlayRequest(
-                bind=messages.make(
-                    pose_service_pb2.PlayRequest.Bind,
-                    slot=slot,
-                    session_id=session_id,
-                    pinned_revision=revision,
-                )
-            )
-        )
+        avatar = Avatar(session_id, slot, revision)
+        self._send(avatar._bind_message())
+        self._await_bound(avatar)
+        self._avatars[slot] = avatar
+        return avatar
+
+    def _await_bound(self, avatar: Avatar) -> None:
         give_up = time.monotonic() + self._channel.timeout
         while True:
             bound = self._receive(give_up).bound
-            if bound.slot == slot and (bound.reason or bound.revision):
+            if bound.slot == avatar.slot and (bound.reason or bound.revision):
                 break
         if bound.reason:
             raise error_of_reason(bound.reason, bound.error_message)
-        avatar = Avatar(session_id, slot)
         avatar._follow(bound)
-        self._avatars[slot] = avatar
-        return avatar
+
+    def _move(self) -> None:
+        """Leaves a stream that the service wants to end for a new one, with the same avatars."""
+        give_up = time.monotonic() + self._channel.timeout
+        try:
+            while self._stream.unanswered:
+                self._receive(give_up)
+            stream = self._open()
+        except Unavailable:
+            return  # there is no other: the old one says how it ends
+        self._stream.close()
+        self._stream = stream
+        for avatar in self._avatars.values():
+            if not avatar.revision:  # its session was deleted
+                continue
+            self._stream.send(avatar._bind_message())
+            try:
+                self._await_bound(avatar)
+            except (NotFound, NotBuilt):
+                avatar.revision = ""
 
     def _ask(self, items: list[Item], with_weights: bool) -> int:
         frame_id = self._next_frame_id
@@ -302,32 +307,13 @@ class Player:
         self._answers.pop(frame_id, None)
 
     def _send(self, request: pose_service_pb2.PlayRequest) -> None:
-        if self._ended is not None:
-            raise self._ended
-        with self._said:
-            stop_at = self._stop_sending_at
-            if self._said_all or (stop_at is not None and time.monotonic() >= stop_at):
-                raise self._draining()
-            if request.WhichOneof("message") != "unbind":
-                self._unanswered += 1
-            self._outgoing.put(request)
-
-    def _draining(self) -> Unavailable:
-        return Unavailable(f"the service at {self._channel.address} is ending", reason="DRAINING")
+        if self._stream.draining:
+            self._move()
+        self._stream.send(request)
 
     def _receive(self, give_up: float) -> pose_service_pb2.PlayResponse:
         """The next message, already taken note of."""
-        if self._ended is not None:
-            raise self._ended
-        try:
-            message = self._incoming.get(timeout=max(0.0, give_up - time.monotonic()))
-        except queue.Empty:
-            raise DeadlineExceeded(
-                f"no answer from {self._channel.address} within {self._channel.timeout:g} s"
-            ) from None
-        if isinstance(message, Error):
-            self._ended = message
-            raise message
+        message = self._stream.receive(give_up)
         kind = message.WhichOneof("message")
         if kind == "frame_result":
             self._take(message.frame_result)
@@ -343,28 +329,3 @@ class Player:
         self._answers[result.frame_id] = [
             item._answer(answer) for item, answer in zip(items, result.items, strict=True)
         ]
-
-    def _read(self) -> None:
-        """Hands over what the service says; a stream alone would wait for it without a limit."""
-        try:
-            for message in self._call:
-                self._note(message)
-                self._incoming.put(message)
-            ended = Unavailable(f"the service at {self._channel.address} has ended the stream")
-            self._incoming.put(ended if self._stop_sending_at is None else self._draining())
-        except grpc.RpcError as error:
-            self._incoming.put(self._channel.error_of(error))
-
-    def _note(self, message: pose_service_pb2.PlayResponse) -> None:
-        """Says the last word to a service that ends as soon as it owes nothing, so that an idle
-        player does not hold it."""
-        kind = message.WhichOneof("message")
-        with self._said:
-            if kind in ("bound", "frame_result"):
-                self._unanswered -= 1
-            elif kind == "draining":
-                grace = message.draining.stop_sending_in.ToTimedelta().total_seconds()
-                self._stop_sending_at = time.monotonic() + grace
-            if self._stop_sending_at is not None and self._unanswered == 0:
-                self._said_all = True
-                self._outgoing.put(None)

@@ -35,6 +35,7 @@ class Shape:
     holes_filled  Holes that the mesh covers; transparency keeps them see-through.
     warnings      What was done to the drawing, in words.
     texture       Where the drawing's pixels lie.
+    flipped       It is the mirror image of what was uploaded.
     """
 
     id: str
@@ -43,6 +44,15 @@ class Shape:
     holes_filled: int
     warnings: list[str]
     texture: TexturePlacement
+    flipped: bool
+
+
+@dataclass(frozen=True)
+class GhostLoss:
+    """Detail lost in a mix of drawings, 0 to 1: an eye upon a cheek makes two pale ghosts."""
+
+    before: float
+    after: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +89,9 @@ class BuildReport:
     seconds           By stage.
     confidence        By drawing: how clear the automatic matching was, in (0, 1].
     warnings          What a person should know, such as drawings to check.
+    ghost_loss        How much detail all drawings mixed in equal parts lose, before and after their
+                      insides were aligned; None when alignment was off or had nothing to do.
+    ghost_losses      By drawing: how much of its own detail that mix loses.
     """
 
     revision: str
@@ -91,6 +104,8 @@ class BuildReport:
     seconds: dict[str, float]
     confidence: dict[str, float]
     warnings: list[str]
+    ghost_loss: GhostLoss | None
+    ghost_losses: dict[str, GhostLoss]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +113,8 @@ class Build:
     """Where a build stands.
 
     state     "queued", "running", "succeeded", "failed" or "cancelled".
-    stage     "matching", "simplification", "triangulation", "improvement" or "weights".
+    stage     "matching", "simplification", "triangulation", "improvement", "alignment" or
+              "weights".
     fraction  Done so far, 0 to 1.
     report    When it succeeded.
     error     When it failed or was cancelled: what `build` raises.

@@ -83,6 +83,11 @@ def add(commands: Commands) -> None:
         type=float,
         help="length of mesh edges, / size of the drawing; default 0.08",
     )
+    parser.add_argument(
+        "--no-align",
+        action="store_true",
+        help="leave inner vertices where they are, instead of moving them to what is drawn there",
+    )
 
 
 def run(client: Client, arguments: argparse.Namespace) -> None:
@@ -97,6 +102,7 @@ def run(client: Client, arguments: argparse.Namespace) -> None:
             session.build(
                 tolerance=arguments.tolerance,
                 target_edge_length=arguments.target_edge_length,
+                align=False if arguments.no_align else None,
                 on_progress=progress.show,
             )
             document, written = _write(session, arguments.out, progress)

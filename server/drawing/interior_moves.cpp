@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drawing/interior_moves.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "geometry/polygon.h"
+
+namespace posespace {
+namespace {
+
+constexpr double kSharp = 8.0 * std::numbers::pi / 180.0;
+
+double AngleOf(const Triangles& triangles, const Points& pose, int t) {
+  return MinAngle(Point(pose.row(triangles(t, 0))), Point(pose.row(triangles(t, 1))),
+                  Point(pose.row(triangles(t, 2))));
+}
+
+}  // namespace
+
+InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
+    : triangles_(&mesh.triangles),
+      pose_(pose),
+      free_(mesh.num_vertices(), 1),
+      around_(mesh.num_vertices()),
+      least_(mesh.num_triangles(), 0.0) {
+  for (const std::vector<int>& loop : mesh.boundary) {
+    for (const int v : loop) free_[v] = 0;
+  }
+  for (const int v : mesh.landmarks) free_[v] = 0;
+
+  // A star's bound binds each of its triangles, and each triangle lies in three stars.
+  std::vector<double> star(mesh.num_vertices(), kSharp);
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    const double angle = AngleOf(mesh.triangles, pose, t);
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh.triangles(t, k);
+      around_[v].push_back(t);
+      star[v] = std::min(star[v], angle);
+    }
+  }
+  for (int t = 0; t < mesh.num_triangles(); ++t) {
+    for (int k = 0; k < 3; ++k) least_[t] = std::max(least_[t], star[mesh.triangles(t, k)]);
+  }
+}
+
+bool InteriorMoves::Move(int vertex, const Point& to) {
+  const Point from = pose_.row(vertex).transpose();
+  pose_.row(vertex) = to.transpose();
+  if (IsAllowed(vertex)) return true;
+  pose_.row(vertex) = from.transpose();
+  return false;
+}
+
+bool InteriorMoves::IsAllowed(int vertex) const {
+  const Triangles& triangles = *triangles_;
+  return std::all_of(around_[vertex].begin(), around_[vertex].end(), [&](int t) {
+    return Orientation(pose_.row(triangles(t, 0)).transpose(),
+                       pose_.row(triangles(t, 1)).transpose(),
+                       pose_.row(triangles(t, 2)).transpose()) > 0 &&
+           AngleOf(triangles, pose_, t) >= least_[t];
+  });
+}
+
+}  // namespace posespace

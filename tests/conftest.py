@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One real posespaced for all tests that leave it alive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import posespace
+import pytest
+
+
+@pytest.fixture(scope="session")
+def server() -> Iterator[posespace.LocalServer]:
+    with posespace.serve_locally() as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def client(server: posespace.LocalServer) -> Iterator[posespace.Client]:
+    with posespace.connect(server.address, timeout=10.0) as connected:
+        yield connected

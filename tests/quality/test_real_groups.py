@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every group of real drawings, from upload to picture.  Leaves build/quality/real_groups.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import posespace
+import pytest
+import survey
+from exact_mesh_checks import assert_valid_in_every_drawing
+from measures import random_weights
+from numpy.typing import NDArray
+from PIL import Image, ImageFilter
+from real_groups import ABSENT, ROOT, Group, all_groups, canvas_of, painted, picture_of
+
+GROUPS = all_groups()
+
+
+@pytest.fixture(scope="module")
+def rows() -> Iterator[list[survey.Row]]:
+    """Filled by the tests, written at their end."""
+    collected: list[survey.Row] = []
+    yield collected
+    folder = ROOT / "build/quality"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "real_groups.md").write_text(survey.table(collected))
+
+
+@pytest.fixture(scope="module", params=GROUPS, ids=[group.name for group in GROUPS])
+def group(request) -> Group:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def built(group, client, rows) -> Iterator[posespace.Session]:
+    session = client.create_session(display_name=group.name)
+    seconds = survey.build(session, group)
+    rows.append(survey.measure(session, group.name, seconds))
+    yield session
+    session.delete()
+
+
+def inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points lie inside the ring, by counting crossings to their right."""
+    odd = np.zeros(len(points), dtype=bool)
+    x, y = points.T
+    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        spans = (ay > y) != (by > y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            odd ^= spans & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    return odd
+
+
+def grown(mask: NDArray[np.bool_], pixels: int) -> NDArray[np.bool_]:
+    """The mask and what lies up to so many pixels beside it."""
+    picture = Image.fromarray(mask.astype(np.uint8))
+    return np.asarray(picture.filter(ImageFilter.MaxFilter(2 * pixels + 1))).astype(bool)
+
+
+def premultiplied(pixels: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """(H, W, 4) in [0, 1]."""
+    values = pixels / 255.0
+    values[..., :3] *= values[..., 3:]
+    return values
+
+
+@pytest.mark.skipif(bool(GROUPS), reason="the drawings are there")
+def test_the_drawings_are_present():
+    pytest.skip(ABSENT)
+
+
+def test_the_mesh_is_valid_in_every_drawing(built):
+    assert_valid_in_every_drawing(built.mesh())
+
+
+def test_the_mesh_covers_every_painted_pixel(built, group):
+    mesh = built.mesh()
+    for name, path in group.members.items():
+        pixels = picture_of(path)
+        left, top, width, _ = canvas_of(path, built.shape(name))
+        wanted = painted(pixels, group)
+        if path.suffix == ".svg":  # of a pixel on an edge the centre may lie outside the drawing
+            wanted &= pixels[..., 3] == 255
+        rows, columns = np.nonzero(wanted)
+        centres = np.stack([columns + 0.5, rows + 0.5], axis=1)
+        centres = centres * (width / pixels.shape[1]) + (left, top)
+        outside = ~inside(mesh.vertices[name][mesh.boundary[0]], centres)
+        # Parts that are too small to matter are left out, and the shape's warnings say so.
+        most = 0.01 if any("left out" in w for w in built.shape(name).warnings) else 0.0
+        assert outside.mean() <= most, f"shape '{name}': {outside.mean():.2%} are outside"
+
+
+def test_every_pose_is_reproduced_at_its_own_weights(built):
+    mesh, placements = built.mesh(), built.state().placements
+    for name, points in mesh.vertices.items():
+        size = np.ptp(points, axis=0).max()
+        for frame in (built.blend(weights={name: 1.0}), built.blend(at=placements[name])):
+            assert np.abs(frame.vertices - points).max() <= 1e-4 * size, name
+            assert frame.folds == 0
+
+
+def test_a_render_at_a_pose_resembles_its_picture(built, group):
+    placements = built.state().placements
+    for name, path in group.members.items():
+        pixels = picture_of(path)
+        height, width = pixels.shape[:2]
+        view = canvas_of(path, built.shape(name))
+        rendered = built.render(at=placements[name], size=(width, height), view=view)
+        wanted, shown = painted(pixels, group), rendered[..., 3] >= (group.threshold or 128)
+        # Of a vector drawing, a hair may fall on one pixel here and on its neighbour there.
+        reach = 1 if path.suffix == ".svg" else 0
+        missed = (wanted & ~grown(shown, reach)) | (shown & ~grown(wanted, reach))
+        overlap = 1 - missed.sum() / (wanted | shown).sum()
+        assert overlap >= 0.98, f"shape '{name}': the silhouettes share {overlap:.3f}"
+        difference = np.abs(premultiplied(rendered) - premultiplied(pixels))[wanted].mean()
+        assert difference <= 0.02, f"shape '{name}': pixels differ by {difference:.3f} of 1"
+
+
+def test_in_betweens_have_few_folds(built):
+    mesh = built.mesh()
+    weights = random_weights(len(mesh.shape_ids))
+    frames = [
+        built.blend(weights=dict(zip(mesh.shape_ids, row.tolist(), strict=True))) for row in weights
+    ]
+    assert sum(frame.folds for frame in frames) <= 0.01 * len(frames) * len(mesh.triangles)
