@@ -92,6 +92,8 @@ const std::map<std::string_view, ErrorCode> kByReason = {
     {"SHAPE_EXISTS", ErrorCode::kAlreadyExists},
     {"SHAPE_NOT_FOUND", ErrorCode::kNotFound},
     {"SLOT_NOT_BOUND", ErrorCode::kNotBuilt},
+    {"SNAPSHOT_CORRUPT", ErrorCode::kInternal},
+    {"STORE_UNAVAILABLE", ErrorCode::kUnavailable},
     {"STREAM_LIMIT", ErrorCode::kResourceExhausted},
 };
 

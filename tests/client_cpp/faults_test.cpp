@@ -2,7 +2,9 @@
 // Services that die, hang, end or come back.
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "tests/client_cpp/live_service.h"
 
@@ -59,6 +61,18 @@ Session MakeStarsAt(const std::string& address, const std::string& id = {}) {
   return MakeStars(Client(address, {.timeout = 60s}), id);
 }
 
+// Waits until the connection's own pause before another attempt is over.
+void Reach(const Client& client) {
+  for (int k = 0; k < 600; ++k) {
+    try {
+      return client.Ping();
+    } catch (const Error&) {
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+  FAIL() << "the service is not reached";
+}
+
 template <typename Call>
 std::chrono::steady_clock::duration TimeOf(const Call& call) {
   const auto start = std::chrono::steady_clock::now();
@@ -104,7 +118,7 @@ TEST(Faults, AServiceThatHangsIsGivenUpAfterTheTimeoutAndFoundAgain) {
 
 TEST(Faults, APlayerFindsAServiceThatCameBackAndAsksAgainWhatHadNoAnswer) {
   RestartableService service;
-  const Client client(service.address(), {.timeout = 30s});
+  const Client client(service.address(), {.timeout = 60s});
   Session session = MakeStars(client, "stars");
   const Frame expected = session.Blend({0.4, 0.2});
   Player player = session.Play();
@@ -116,7 +130,7 @@ TEST(Faults, APlayerFindsAServiceThatCameBackAndAsksAgainWhatHadNoAnswer) {
   }
   service.Kill();
   service.Start();
-  MakeStars(client, "stars");
+  MakeStarsAt(service.address(), "stars");
   for (int tick = 0; tick < 6; ++tick) {
     const auto answers = player.Receive();
     ASSERT_EQ(answers.size(), 300u);
@@ -135,6 +149,29 @@ TEST(Faults, APlayerFindsAServiceThatCameBackAndAsksAgainWhatHadNoAnswer) {
   EXPECT_EQ(player.times_opened(), 2);
 }
 
+TEST(Faults, APlayerGoesOnWhenAServiceThatKeepsItsSessionsComesBack) {
+  const auto store = std::filesystem::temp_directory_path() /
+                     ("posespace-store-" + std::to_string(getpid()) + ".db");
+  RestartableService service({"--store", "sqlite:" + store.string()});
+  const Client client(service.address(), {.timeout = 60s});
+  Player player = MakeStars(client).Play();
+  player.Ask(0, 0, {0.4, 0.2});
+  const auto before = player.Tick()[0];
+  const std::vector<float> vertices(before.vertices.begin(), before.vertices.end());
+  const std::string revision = before.session->revision;
+  service.Kill();
+  service.Start();
+  player.Ask(0, 0, {0.4, 0.2});
+  const auto answers = player.Tick();
+  ASSERT_EQ(answers[0].error, nullptr) << answers[0].error->what();
+  EXPECT_EQ(answers[0].session->revision, revision);
+  EXPECT_EQ(Distance(answers[0].vertices, vertices), 0.0);
+  EXPECT_EQ(player.times_opened(), 2);
+  for (const char* const suffix : {"", "-wal", "-shm", "-lock"}) {
+    std::filesystem::remove(store.string() + suffix);
+  }
+}
+
 TEST(Faults, APlayerThatFailedCanBeUsedOnceTheServiceIsBack) {
   RestartableService service;
   const Client client(service.address(), {.timeout = kTimeout});
@@ -144,14 +181,7 @@ TEST(Faults, APlayerThatFailedCanBeUsedOnceTheServiceIsBack) {
   player.Ask(0, 1, {0, 0});
   EXPECT_THROW(player.Tick(), Error);
   service.Start();
-  for (int k = 0; k < 20; ++k) {  // until the connection's own pause is over
-    try {
-      client.Ping();
-      break;
-    } catch (const Error&) {
-      std::this_thread::sleep_for(200ms);
-    }
-  }
+  Reach(client);
   MakeStarsAt(service.address(), "stars");
   player.Ask(0, 2, {0, 0});
   const auto answers = player.Tick();
@@ -180,7 +210,7 @@ TEST(Faults, APlayerMovesToTheServiceThatTakesThePlaceOfOneThatEnds) {
   service.program().Signal(SIGTERM);
   EXPECT_EQ(service.program().Wait(), 0);
   service.Start();
-  MakeStars(client, "stars");
+  MakeStarsAt(service.address(), "stars");
   player.Ask(0, 3, {0, 0});
   const auto answers = player.Tick();
   EXPECT_EQ(answers[0].error, nullptr);

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,8 +12,10 @@ import numpy as np
 import posespace
 import pytest
 from PIL import Image, ImageDraw
+from posespace import errors
 
-PROGRAM = Path(__file__).resolve().parents[2] / "build/bin/client_parity"
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = ROOT / "build/bin/client_parity"
 
 
 def draw(path: Path, arm: int) -> None:
@@ -65,3 +68,12 @@ def test_both_clients_get_the_same_bits(server, tmp_path):
         assert (tmp_path / "played").read_bytes() == blended.tobytes()
         assert (tmp_path / "weights").read_bytes() == session.weights(points).tobytes()
         assert np.isfinite(blended).all()
+
+
+def test_both_clients_take_a_reason_for_the_same_kind_of_error():
+    source = (ROOT / "client/cpp/transport_error.cpp").read_text()
+    in_cpp = dict(re.findall(r'\{"(\w+)", ErrorCode::k(\w+)\}', source))
+    in_python = {
+        reason: kind.__name__.removesuffix("Error") for reason, kind in errors._BY_REASON.items()
+    }
+    assert in_cpp == in_python
