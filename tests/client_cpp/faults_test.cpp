@@ -172,6 +172,21 @@ TEST(Faults, APlayerGoesOnWhenAServiceThatKeepsItsSessionsComesBack) {
   }
 }
 
+TEST(Faults, APlayerOutlivesItsStreamsWithoutLosingAnAvatar) {
+  RestartableService service({"--max-stream-age", "1"});
+  const Client client(service.address(), {.timeout = 60s});
+  Player player = MakeStars(client).Play();
+  const auto give_up = std::chrono::steady_clock::now() + 60s;
+  for (std::uint32_t tag = 0; player.times_opened() < 3; ++tag) {
+    ASSERT_LT(std::chrono::steady_clock::now(), give_up);
+    player.Ask(0, tag, {0.4, 0.2});
+    const auto answers = player.Tick();
+    ASSERT_EQ(answers.size(), 1u);
+    ASSERT_EQ(answers[0].error, nullptr) << answers[0].error->what();
+    EXPECT_EQ(answers[0].tag, tag);
+  }
+}
+
 TEST(Faults, APlayerThatFailedCanBeUsedOnceTheServiceIsBack) {
   RestartableService service;
   const Client client(service.address(), {.timeout = kTimeout});
