@@ -2,9 +2,11 @@
 #include "geometry/mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <compare>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace posespace {
 
@@ -30,22 +32,36 @@ double MinAngle(const CompatibleMesh& mesh) {
 }
 
 Edges EdgesOf(const Triangles& triangles) {
-  std::vector<std::array<std::int32_t, 3>> sides;  // (a, b, triangle) with a < b
-  sides.reserve(static_cast<std::size_t>(triangles.rows()) * 3);
-  for (std::int32_t t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(triangles(t, k), triangles(t, (k + 1) % 3));
-      sides.push_back({a, b, t});
+  // Sides (a, b) with a < b are put in order by a, counting; then few are left to compare.
+  struct Side {
+    std::int32_t b, triangle;
+    auto operator<=>(const Side&) const = default;
+  };
+  const auto for_each_side = [&triangles](const auto& visit) {
+    for (std::int32_t t = 0; t < triangles.rows(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const auto [a, b] = std::minmax(triangles(t, k), triangles(t, (k + 1) % 3));
+        visit(a, Side{b, t});
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end());
+  };
+  const int num_vertices = triangles.size() == 0 ? 0 : triangles.maxCoeff() + 1;
+  std::vector<std::size_t> first(num_vertices + 1, 0);
+  for_each_side([&](std::int32_t a, const Side&) { ++first[a + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Side> sides(first.back());
+  std::vector<std::size_t> next = first;
+  for_each_side([&](std::int32_t a, const Side& side) { sides[next[a]++] = side; });
+
   Edges edges(static_cast<Eigen::Index>(sides.size()), 4);
   Eigen::Index count = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const bool shared =
-        i + 1 < sides.size() && sides[i][0] == sides[i + 1][0] && sides[i][1] == sides[i + 1][1];
-    edges.row(count++) << sides[i][0], sides[i][1], sides[i][2], shared ? sides[i + 1][2] : -1;
-    if (shared) ++i;
+  for (std::int32_t a = 0; a < num_vertices; ++a) {
+    std::sort(sides.begin() + first[a], sides.begin() + first[a + 1]);
+    for (std::size_t i = first[a]; i < first[a + 1]; ++i) {
+      const bool shared = i + 1 < first[a + 1] && sides[i].b == sides[i + 1].b;
+      edges.row(count++) << a, sides[i].b, sides[i].triangle, shared ? sides[i + 1].triangle : -1;
+      if (shared) ++i;
+    }
   }
   edges.conservativeResize(count, Eigen::NoChange);
   return edges;

@@ -18,8 +18,8 @@ struct PoseLattice {
   Points vertices;
   Triangles triangles;             // all positive
   std::vector<int> pose_vertices;  // the vertex on each placement
-  Point size;                      // the rectangle is [0, x] x [0, y]
-  double spacing;                  // edge length away from close poses
+  Point size = Point::Zero();      // the rectangle is [0, x] x [0, y]
+  double spacing = 0.0;            // edge length away from close poses
 };
 
 // Requires  placements (N x 2) in [margin, size - margin] for a margin of many spacings, no two

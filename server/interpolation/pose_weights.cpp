@@ -10,7 +10,6 @@
 
 #include "interpolation/biharmonic_fit.h"
 #include "interpolation/clough_tocher.h"
-#include "interpolation/pose_lattice.h"
 #include "interpolation/triangle_locator.h"
 
 namespace posespace {
@@ -101,6 +100,41 @@ double Eased(double x, double size) {
   return x;
 }
 
+// Placements in the domain, and its size.
+struct Layout {
+  Chart chart;
+  Points in_domain;
+  Point size = Point::Zero();
+};
+
+Layout LayoutOf(const Points& placements, double diameter) {
+  Layout layout{{placements.colwise().minCoeff().transpose(), diameter},
+                Points(placements.rows(), 2)};
+  for (Eigen::Index i = 0; i < placements.rows(); ++i) {
+    const Point place = layout.chart.ToDomain(placements.row(i).transpose());
+    layout.in_domain.row(i) = place;
+    layout.size = layout.size.cwiseMax(place + Point::Constant(kMargin));
+  }
+  return layout;
+}
+
+// True when a lattice has the size of the layout's, and triangles that can be walked through.
+bool IsLatticeOf(const Layout& layout, const PoseLattice& lattice) {
+  const auto num_vertices = static_cast<std::int32_t>(lattice.vertices.rows());
+  if (lattice.size != layout.size || lattice.spacing != kSpacing) return false;
+  if (num_vertices == 0 || lattice.triangles.rows() == 0) return false;
+  if (lattice.triangles.minCoeff() < 0 || lattice.triangles.maxCoeff() >= num_vertices) {
+    return false;
+  }
+  const Points& vertices = lattice.vertices;
+  for (const auto& triangle : lattice.triangles.rowwise()) {
+    const double area =
+        Cross(vertices.row(triangle[0]), vertices.row(triangle[1]), vertices.row(triangle[2]));
+    if (!(area > 0.0)) return false;
+  }
+  return vertices.allFinite();
+}
+
 }  // namespace
 
 struct PoseWeights::Field {
@@ -111,26 +145,16 @@ struct PoseWeights::Field {
     LatticeData data;
   };
 
-  // Lattice and chart of at least two placements, without the data.
-  static Surface Over(const Points& placements, double diameter);
+  Field() : num_poses(1) {}
+  Field(const Layout& layout, PoseLattice lattice, LatticeData data)
+      : num_poses(static_cast<int>(layout.in_domain.rows())) {
+    TriangleLocator locator(lattice.vertices, lattice.triangles, lattice.size, lattice.spacing);
+    surface = Surface{layout.chart, std::move(lattice), std::move(locator), std::move(data)};
+  }
 
   int num_poses;
   std::optional<Surface> surface;  // none for a single pose: its weight is 1 everywhere
 };
-
-PoseWeights::Field::Surface PoseWeights::Field::Over(const Points& placements, double diameter) {
-  const Chart chart{placements.colwise().minCoeff().transpose(), diameter};
-  Points in_domain(placements.rows(), 2);
-  Point size = Point::Zero();
-  for (Eigen::Index i = 0; i < placements.rows(); ++i) {
-    const Point place = chart.ToDomain(placements.row(i).transpose());
-    in_domain.row(i) = place;
-    size = size.cwiseMax(place + Point::Constant(kMargin));
-  }
-  PoseLattice lattice = TessellateAround(in_domain, size, kSpacing);
-  TriangleLocator locator(lattice.vertices, lattice.triangles, size, lattice.spacing);
-  return {chart, std::move(lattice), std::move(locator), {}};
-}
 
 Result<PoseWeights> PoseWeights::Fit(const Points& placements, const PoseWeightsOptions& options,
                                      Progress* progress) {
@@ -141,38 +165,39 @@ Result<PoseWeights> PoseWeights::Fit(const Points& placements, const PoseWeights
                  "levelling must lie between 0.01 and 100",
                  {{"levelling", "out of range"}}};
   }
-  if (placements.rows() == 1) {
-    return PoseWeights(std::make_shared<const Field>(Field{1, std::nullopt}));
-  }
+  if (placements.rows() == 1) return PoseWeights(std::make_shared<const Field>());
 
-  Field::Surface surface = Field::Over(placements, spread.diameter);
+  const Layout layout = LayoutOf(placements, spread.diameter);
+  PoseLattice lattice = TessellateAround(layout.in_domain, layout.size, kSpacing);
   Report(progress, 0.2);
-  surface.data = TRY(FitBiharmonic(surface.lattice, options.levelling, progress));
+  LatticeData data = TRY(FitBiharmonic(lattice, options.levelling, progress));
   Report(progress, 1.0);
-  return PoseWeights(std::make_shared<const Field>(
-      Field{static_cast<int>(placements.rows()), std::move(surface)}));
+  return PoseWeights(std::make_shared<const Field>(layout, std::move(lattice), std::move(data)));
 }
 
-LatticeData PoseWeights::fit() const {
-  return field_->surface ? field_->surface->data : LatticeData();
+PoseWeightsFit PoseWeights::fit() const {
+  if (!field_->surface) return {};
+  return {field_->surface->lattice, field_->surface->data};
 }
 
-Result<PoseWeights> PoseWeights::FromFit(const Points& placements, LatticeData fit) {
+Result<PoseWeights> PoseWeights::FromFit(const Points& placements, PoseWeightsFit fit) {
   const Spread spread = SpreadOf(placements);
   if (auto refusal = Refusal(placements, spread)) return *std::move(refusal);
-  std::optional<Field::Surface> surface;
-  if (placements.rows() > 1) surface = Field::Over(placements, spread.diameter);
-  const Eigen::Index rows = surface ? 3 * surface->lattice.vertices.rows() : 0;
-  const Eigen::Index columns = surface ? placements.rows() : 0;
-  if (fit.rows() != rows || fit.cols() != columns) {
-    return Error{ErrorCode::kSizeMismatch, "the weights are not those of these placements", {}};
+  const Error misfit{ErrorCode::kSizeMismatch, "the weights are not those of these placements", {}};
+  if (placements.rows() == 1) {
+    if (fit.data.size() != 0) return misfit;
+    return PoseWeights(std::make_shared<const Field>());
   }
-  if (!fit.allFinite()) {
+  const Layout layout = LayoutOf(placements, spread.diameter);
+  if (!IsLatticeOf(layout, fit.lattice) || fit.data.rows() != 3 * fit.lattice.vertices.rows() ||
+      fit.data.cols() != placements.rows()) {
+    return misfit;
+  }
+  if (!fit.data.allFinite()) {
     return Error{ErrorCode::kWeightsNotFinite, "the weights are not finite", {}};
   }
-  if (surface) surface->data = std::move(fit);
-  return PoseWeights(std::make_shared<const Field>(
-      Field{static_cast<int>(placements.rows()), std::move(surface)}));
+  return PoseWeights(
+      std::make_shared<const Field>(layout, std::move(fit.lattice), std::move(fit.data)));
 }
 
 Eigen::VectorXd PoseWeights::At(const Point& point) const {

@@ -9,12 +9,19 @@
 #include "geometry/progress.h"
 #include "geometry/result.h"
 #include "interpolation/biharmonic_fit.h"
+#include "interpolation/pose_lattice.h"
 
 namespace posespace {
 
 struct PoseWeightsOptions {
   // Distance over which weights flatten far from the poses, / diameter of the placements.
   double levelling = 0.4;
+};
+
+// What is slow to find of pose weights, as plain numbers; empty for a single pose.
+struct PoseWeightsFit {
+  PoseLattice lattice = {};
+  LatticeData data = {};  // 3 numbers a lattice vertex for each pose (biharmonic_fit.h)
 };
 
 // The weight of every pose at every point of the 2D pose space: N smooth functions that are exact
@@ -49,12 +56,11 @@ class PoseWeights {
   static Result<PoseWeights> Fit(const Points& placements, const PoseWeightsOptions& options = {},
                                  Progress* progress = nullptr);
 
-  // What Fit found, 3 numbers a lattice vertex for each pose (biharmonic_fit.h), none for a single
-  // pose; and the weights that it found for those placements, the same to the last bit, without the
-  // factorisation: in a tenth of the time.
-  // Fails     as Fit does; kSizeMismatch (not the numbers of these placements), kWeightsNotFinite.
-  LatticeData fit() const;
-  static Result<PoseWeights> FromFit(const Points& placements, LatticeData fit);
+  // What Fit found, and the weights that it found for those placements, the same to the last bit,
+  // in a fiftieth of the time. Fails     as Fit does; kSizeMismatch (not a fit of these
+  // placements), kWeightsNotFinite.
+  PoseWeightsFit fit() const;
+  static Result<PoseWeights> FromFit(const Points& placements, PoseWeightsFit fit);
 
   // The N weights at a finite point.
   Eigen::VectorXd At(const Point& point) const;

@@ -116,7 +116,7 @@ class PoseSpace {
     std::vector<std::string> warnings;
     Points placements;
     std::vector<int> turns;
-    LatticeData weights;  // PoseWeights::fit
+    PoseWeightsFit weights;
     MappingReport report;
     Points reach;  // 2 x 2: the corners of what blends take up
   };

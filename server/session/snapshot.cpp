@@ -155,6 +155,24 @@ CompatibleMesh ReadMesh(ByteReader& in) {
   return mesh;
 }
 
+void Write(const PoseWeightsFit& fit, ByteWriter& out) {
+  out.Add(fit.lattice.vertices).Add(fit.lattice.triangles);
+  Write(fit.lattice.pose_vertices, out);
+  Write(fit.lattice.size, out);
+  out.Add(fit.lattice.spacing).Add(fit.data);
+}
+
+PoseWeightsFit ReadWeights(ByteReader& in) {
+  PoseWeightsFit fit;
+  fit.lattice.vertices = in.Read<Points>();
+  fit.lattice.triangles = in.Read<Triangles>();
+  fit.lattice.pose_vertices = ReadInts(in);
+  fit.lattice.size = ReadPoint(in);
+  fit.lattice.spacing = in.Real();
+  fit.data = in.Read<LatticeData>();
+  return fit;
+}
+
 }  // namespace
 
 Bytes ToBytes(const SessionRecord& record) {
@@ -257,7 +275,7 @@ Bytes ToBytes(const PoseSpace& pose_space) {
   Write(parts.warnings, out);
   out.Add(parts.placements);
   Write(parts.turns, out);
-  out.Add(parts.weights);
+  Write(parts.weights, out);
   Write(parts.report, out);
   out.Add(parts.reach);
   return out.Sealed(kPoseSpaceKind, kPoseSpaceVersion);
@@ -278,7 +296,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpaceFromBytes(std::span<const std:
   parts.warnings = ReadTexts(in);
   parts.placements = in.Read<Points>();
   parts.turns = ReadInts(in);
-  parts.weights = in.Read<LatticeData>();
+  parts.weights = ReadWeights(in);
   parts.report = ReadMappingReport(in);
   parts.reach = in.Read<Points>();
   if (revision != RevisionDigest(parts.mesh_digest, parts.placements)) in.Fail();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interpolation/pose_weights.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -11,6 +12,7 @@
 
 #include "interpolation/pose_lattice.h"
 #include "tests/interpolation/sample_meshes.h"
+#include "tests/support/fails_with.h"
 #include "tests/support/points.h"
 
 namespace posespace {
@@ -466,6 +468,35 @@ TEST(PoseWeights, AreTheSameEachTime) {
   for (const Point& point : {Point(0.3, 0.4), Point(1.9, 1.1), Point(-7, 2)}) {
     EXPECT_EQ(one.At(point), other.At(point));
   }
+}
+
+TEST(PoseWeights, OfAnEarlierFitAreTheSameToTheLastBit) {
+  const Points placements = PointsOf("0 0, 1 0.2, 0.4 1, 0.45 1.02");
+  const auto fitted = PoseWeights::Fit(placements);
+  ASSERT_THAT(fitted, Succeeds());
+  const auto again = PoseWeights::FromFit(placements, fitted->fit());
+  ASSERT_THAT(again, Succeeds());
+  for (int k = 0; k < 200; ++k) {
+    const Point at(0.02 * k - 1.0, std::sin(k));
+    EXPECT_EQ(again->At(at), fitted->At(at)) << k;
+  }
+}
+
+TEST(PoseWeights, OfAnEarlierFitOfOnePoseAreOne) {
+  const Points one = PointsOf("3 4");
+  const auto again = PoseWeights::FromFit(one, PoseWeights::Fit(one)->fit());
+  ASSERT_THAT(again, Succeeds());
+  EXPECT_EQ(again->At(Point(0, 0)), Eigen::VectorXd::Ones(1));
+}
+
+TEST(PoseWeights, RefuseAFitOfOtherPlacements) {
+  const auto fit = PoseWeights::Fit(PointsOf("0 0, 1 0, 0 1"))->fit();
+  for (const char* others : {"0 0", "0 0, 1 0", "0 0, 3 0, 0 1", "0 0, 1 0, 0 1, 1 1"}) {
+    EXPECT_THAT(PoseWeights::FromFit(PointsOf(others), fit), FailsWith(ErrorCode::kSizeMismatch))
+        << others;
+  }
+  EXPECT_THAT(PoseWeights::FromFit(PointsOf("0 0, 0 0"), fit),
+              FailsWith(ErrorCode::kPlacementsCoincide));
 }
 
 }  // namespace

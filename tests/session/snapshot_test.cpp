@@ -271,8 +271,15 @@ TEST_F(PoseSpaceSnapshot, IsNotMadeOfPartsThatDoNotFit) {
       [](Parts& parts) { parts.placements.conservativeResize(2, 2); },
       [](Parts& parts) { parts.placements(0, 0) = kNan; },
       [](Parts& parts) { parts.placements.setZero(); },
-      [](Parts& parts) { parts.weights.conservativeResize(parts.weights.rows() - 1, 3); },
-      [](Parts& parts) { parts.weights(0, 0) = kNan; },
+      [](Parts& parts) { parts.weights.data.conservativeResize(3, 3); },
+      [](Parts& parts) { parts.weights.data(0, 0) = kNan; },
+      [](Parts& parts) { parts.weights.lattice.size.x() *= 2; },
+      [](Parts& parts) { parts.weights.lattice.spacing = 1e-9; },
+      [](Parts& parts) { parts.weights.lattice.vertices(0, 0) = kNan; },
+      [](Parts& parts) { parts.weights.lattice.triangles(0, 0) = -1; },
+      [](Parts& parts) { parts.weights.lattice.triangles(0, 0) = 1 << 30; },
+      [](Parts& parts) { parts.weights.lattice.triangles.row(0).setConstant(5); },
+      [](Parts& parts) { parts.weights.lattice.triangles.resize(0, 3); },
       [](Parts& parts) { parts.reach.resize(1, 2); },
       [](Parts& parts) { parts.reach(0, 0) = kNan; }};
   ASSERT_THAT(PoseSpace::FromParts(Creatures().ToParts()), Succeeds());
