@@ -121,7 +121,9 @@ Layout LayoutOf(const Points& placements, double diameter) {
 // True when a lattice has the size of the layout's, and triangles that can be walked through.
 bool IsLatticeOf(const Layout& layout, const PoseLattice& lattice) {
   const auto num_vertices = static_cast<std::int32_t>(lattice.vertices.rows());
-  if (lattice.size != layout.size || lattice.spacing != kSpacing) return false;
+  if (lattice.size != layout.size) return false;
+  // A tessellation fits its spacing to the rectangle; a far smaller one would be a flood of cells.
+  if (!(lattice.spacing >= 0.5 * kSpacing && lattice.spacing <= 2.0 * kSpacing)) return false;
   if (num_vertices == 0 || lattice.triangles.rows() == 0) return false;
   if (lattice.triangles.minCoeff() < 0 || lattice.triangles.maxCoeff() >= num_vertices) {
     return false;

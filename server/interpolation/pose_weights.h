@@ -57,8 +57,8 @@ class PoseWeights {
                                  Progress* progress = nullptr);
 
   // What Fit found, and the weights that it found for those placements, the same to the last bit,
-  // in a fiftieth of the time. Fails     as Fit does; kSizeMismatch (not a fit of these
-  // placements), kWeightsNotFinite.
+  // in a small part of the time.
+  // Fails     as Fit does; kSizeMismatch (not a fit of these placements), kWeightsNotFinite.
   PoseWeightsFit fit() const;
   static Result<PoseWeights> FromFit(const Points& placements, PoseWeightsFit fit);
 
