@@ -103,3 +103,11 @@ def test_the_installed_client_brings_no_header_of_the_wire(prefix):
     headers = {path.name for path in prefix.rglob("*.h")}
     assert "client.h" in headers
     assert not [name for name in headers if "pb" in name or "grpc" in name]
+
+
+def test_the_installed_service_draws_svg_documents(server):
+    with posespace.connect(server.address) as client:
+        session = client.create_session()
+        shape = session.put_shape("stand", svg=ROOT / "deploy/drawings/figure-stand.svg")
+        assert len(shape.outline[0]) > 16
+        session.delete()
