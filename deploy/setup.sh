@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-say() { printf '\033[1m==> %s\033[0m\n' "$*"; }
+say() { if [ -t 1 ]; then printf '\033[1m==> %s\033[0m\n' "$*"; else printf '==> %s\n' "$*"; fi; }
 fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # install_packages [NAME...]: everything in deploy/packages.txt, and NAMEs.
@@ -42,7 +42,7 @@ build() {
       { cat "/tmp/posespace-configure.$$"; fail "cmake --preset $preset failed"; }
     rm -f "/tmp/posespace-configure.$$"
   fi
-  say "Building build/$preset"
+  say "Building build/$preset (minutes, the first time)"
   local targets=() name
   for name in "$@"; do targets+=(--target "$name"); done
   local quiet=()

@@ -55,8 +55,15 @@ def test_the_two_commands_are_what_checks_run():
     assert "tests/run" in (ROOT / ".ci/run").read_text().splitlines()
 
 
+def test_the_path_leads_to_both_programs():
+    script = blocks("sh")[1] + "command -v posespaced posespace"
+    done = subprocess.run(["bash", "-c", script], cwd=ROOT, capture_output=True, text=True)
+    found = [Path(line) for line in done.stdout.split()]
+    assert found == [BIN / "posespaced", ROOT / "build/venv/bin/posespace"]
+
+
 def test_the_shell_commands_leave_what_they_name(folder, environment):
-    commands = blocks("sh")[1].splitlines()
+    commands = blocks("sh")[2].splitlines()
     assert len(commands) == 2
     for command in commands:
         run(shlex.split(command), folder, environment)
@@ -77,7 +84,7 @@ def test_the_cpp_call_is_the_examples():
 
 
 def test_the_service_listens_where_it_is_told(folder, environment):
-    program, *arguments = shlex.split(blocks("sh")[2])
+    program, *arguments = shlex.split(blocks("sh")[3])
     assert (ROOT / program).samefile(shutil.which("posespaced", path=environment["PATH"]))
     address = arguments[arguments.index("--listen") + 1]
     free = address.rsplit(":", 1)[0] + ":0"  # the port of the page may be taken
