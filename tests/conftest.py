@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import posespace
 import pytest
 
-# A shell starts what runs in its background deaf to Ctrl-C, and children inherit that; programs that
-# tests interrupt must hear it.
+# A shell starts what runs in its background deaf to Ctrl-C, and children inherit that; programs
+# that tests interrupt must hear it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
