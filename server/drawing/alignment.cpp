@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "drawing/common_pose.h"
@@ -11,6 +12,7 @@
 #include "drawing/feature_flow.h"
 #include "drawing/ghost_loss.h"
 #include "drawing/interior_moves.h"
+#include "drawing/with_opencv.h"
 
 namespace posespace {
 namespace {
@@ -20,11 +22,12 @@ constexpr int kSweeps = 4;  // over the vertices of a round: some wait for their
 
 // Weight of a vertex against that of an edge, where colours change from 0 to 1 over the size of the
 // raster.
-constexpr double kFollowing = 0.15;
+constexpr double kFollowing = 0.1;
 constexpr double kReach = 6.0 / 512.0;  // of what a vertex looks at (deviation), / raster size
 
-// Less ghost loss than this cannot be seen.
+// Less ghost loss than this cannot be seen; less of it taken away is not worth rounder triangles.
 constexpr double kInvisible = 1e-3;
+constexpr double kLeastGain = 0.05;
 
 Error Cancelled() { return Error{ErrorCode::kCancelled, "the alignment was cancelled", {}}; }
 
@@ -37,8 +40,9 @@ struct Moving {
 // Twice as fine as the finest texture shows everything there is.
 int RasterSize(std::span<const ReducedTexture> textures) {
   int longest = 1;
-  for (const ReducedTexture& each : textures)
+  for (const ReducedTexture& each : textures) {
     longest = std::max({longest, each.width, each.height});
+  }
   return std::min(2 * longest, AlignmentSize(static_cast<int>(textures.size())));
 }
 
@@ -52,6 +56,8 @@ class Comparison {
         size_(RasterSize(textures)),
         raster_(mesh.triangles, common, size_),
         textures_(textures) {}
+
+  bool IsPlain(std::size_t i) const { return textures_[i].plain; }
 
   cv::Mat4f Warp(std::size_t i, const Points& pose) const {
     return raster_.Warp(pose, textures_[i]);
@@ -110,9 +116,12 @@ void KeepPainted(const cv::Mat4f& picture, cv::Mat1b* mask) {
   }
 }
 
-// The picture that differs least from the others.
-std::size_t Medoid(std::span<const cv::Mat3f> pictures) {
+// The picture that differs least from the others, but for plain ones: they show nothing to go by.
+std::size_t Medoid(std::span<const cv::Mat3f> pictures, const Comparison& comparison) {
   std::vector<double> difference(pictures.size(), 0.0);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (comparison.IsPlain(i)) difference[i] = std::numeric_limits<double>::infinity();
+  }
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     for (std::size_t j = i + 1; j < pictures.size(); ++j) {
       const double between = cv::norm(pictures[i], pictures[j], cv::NORM_L1);
@@ -121,6 +130,84 @@ std::size_t Medoid(std::span<const cv::Mat3f> pictures) {
     }
   }
   return std::min_element(difference.begin(), difference.end()) - difference.begin();
+}
+
+// Moves the drawings in rounds, and their `pictures` with them: each along the field that brings it
+// to the middlemost one, less the mean of all fields, so that no drawing is special.
+Result<void> MoveTogether(const Comparison& comparison, std::vector<Moving>* moving,
+                          std::vector<cv::Mat3f>* pictures, Progress* progress) {
+  const std::size_t count = moving->size();
+  const std::size_t middle = Medoid(*pictures, comparison);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Points> wanted(count);
+    Points mean = Points::Zero((*moving)[middle].field.rows(), 2);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (IsCancelled(progress)) return Cancelled();
+      const Moving& each = (*moving)[i];
+      wanted[i] = i == middle ? each.field
+                              : comparison.FieldTowards((*pictures)[middle], (*pictures)[i], each);
+      mean += wanted[i] / static_cast<double>(count);
+      Report(progress, (round + (i + 1.0) / static_cast<double>(count)) / (kRounds + 1.0));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (IsCancelled(progress)) return Cancelled();
+      comparison.Move(i, wanted[i] - mean, &(*moving)[i]);
+      (*pictures)[i] = FillBeyondPaint(comparison.Warp(i, (*moving)[i].moves.pose()));
+    }
+  }
+  return {};
+}
+
+// Which drawings fit the others better aligned than not.
+Result<std::vector<char>> WhomItHelps(const std::vector<cv::Mat3f>& unaligned,
+                                      std::vector<cv::Mat3f> pictures, const cv::Mat1b& painted,
+                                      const Progress* progress) {
+  const double together = MeasureGhosts(pictures, painted).all;
+  std::vector<char> helps(pictures.size(), 1);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (IsCancelled(progress)) return Cancelled();
+    const cv::Mat3f aligned = std::exchange(pictures[i], unaligned[i]);
+    helps[i] = MeasureGhosts(pictures, painted).all > together ? 1 : 0;
+    pictures[i] = aligned;
+  }
+  return helps;
+}
+
+// `result` with its poses aligned and its losses measured.
+Result<Alignment> Align(const CompatibleMesh& mesh, const Points& common,
+                        std::span<const ReducedTexture> textures, Alignment result,
+                        Progress* progress) {
+  const std::size_t count = mesh.poses.size();
+  const Comparison comparison(mesh, common, textures);
+  std::vector<cv::Mat3f> unaligned;
+  cv::Mat1b painted;  // in all drawings: what lies beside another drawing is no ghost inside
+  std::vector<Moving> moving;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (IsCancelled(progress)) return Cancelled();
+    const cv::Mat4f warped = comparison.Warp(i, mesh.poses[i]);
+    unaligned.push_back(FillBeyondPaint(warped));
+    KeepPainted(warped, &painted);
+    moving.push_back({InteriorMoves(mesh, mesh.poses[i]), Points::Zero(mesh.num_vertices(), 2)});
+  }
+  const GhostLoss before = MeasureGhosts(unaligned, painted);
+  for (std::size_t i = 0; i < count; ++i) result.each[i] = {before.each[i], before.each[i]};
+  result.all = {before.all, before.all};
+  if (before.all < kInvisible) return result;
+
+  std::vector<cv::Mat3f> pictures = unaligned;
+  TRY(MoveTogether(comparison, &moving, &pictures, progress));
+  const std::vector<char> helps = TRY(WhomItHelps(unaligned, pictures, painted, progress));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (helps[i] == 0) pictures[i] = unaligned[i];
+  }
+  const GhostLoss after = MeasureGhosts(pictures, painted);
+  if (!(after.all < (1.0 - kLeastGain) * before.all)) return result;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (helps[i] != 0) result.poses[i] = moving[i].moves.pose();
+    result.each[i].after = after.each[i];
+  }
+  result.all.after = after.all;
+  return result;
 }
 
 }  // namespace
@@ -155,7 +242,6 @@ ReducedTexture Reduce(const Texture& texture, int size) {
       texel[3] += alpha;
     }
   }
-  if (reduced.plain) reduced.width = reduced.height = 0, reduced.rgba = {};
   return reduced;
 }
 
@@ -171,63 +257,7 @@ Result<Alignment> AlignInteriors(const CompatibleMesh& mesh, const Points& commo
                                  [](const ReducedTexture& each) { return each.plain; });
   if (count < 2 || plain || !common.allFinite()) return result;
 
-  const Comparison comparison(mesh, common, textures);
-  std::vector<cv::Mat3f> unaligned;
-  cv::Mat1b painted;  // in all drawings: what lies beside another drawing is no ghost inside
-  std::vector<Moving> moving;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (IsCancelled(progress)) return Cancelled();
-    const cv::Mat4f warped = comparison.Warp(i, mesh.poses[i]);
-    unaligned.push_back(FillBeyondPaint(warped));
-    KeepPainted(warped, &painted);
-    moving.push_back({InteriorMoves(mesh, mesh.poses[i]), Points::Zero(mesh.num_vertices(), 2)});
-  }
-  const GhostLoss before = MeasureGhosts(unaligned, painted);
-  for (std::size_t i = 0; i < count; ++i) result.each[i] = {before.each[i], before.each[i]};
-  result.all = {before.all, before.all};
-  if (before.all < kInvisible) return result;
-
-  // Fields towards the middlemost drawing, less their mean: no drawing is special.
-  const std::size_t middle = Medoid(unaligned);
-  std::vector<cv::Mat3f> pictures = unaligned;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<Points> wanted(count);
-    Points mean = Points::Zero(mesh.num_vertices(), 2);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (IsCancelled(progress)) return Cancelled();
-      wanted[i] = i == middle ? moving[i].field
-                              : comparison.FieldTowards(pictures[middle], pictures[i], moving[i]);
-      mean += wanted[i] / static_cast<double>(count);
-      Report(progress, (round + (i + 1.0) / static_cast<double>(count)) / (kRounds + 1.0));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (IsCancelled(progress)) return Cancelled();
-      comparison.Move(i, wanted[i] - mean, &moving[i]);
-      pictures[i] = FillBeyondPaint(comparison.Warp(i, moving[i].moves.pose()));
-    }
-  }
-
-  // A drawing without which the others fit better goes back.
-  const double together = MeasureGhosts(pictures, painted).all;
-  std::vector<char> helps(count, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (IsCancelled(progress)) return Cancelled();
-    const cv::Mat3f aligned = std::exchange(pictures[i], unaligned[i]);
-    helps[i] = MeasureGhosts(pictures, painted).all > together ? 1 : 0;
-    pictures[i] = aligned;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (helps[i] == 0) pictures[i] = unaligned[i];
-  }
-  const GhostLoss after = MeasureGhosts(pictures, painted);
-  if (!(after.all < before.all)) return result;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (helps[i] != 0) result.poses[i] = moving[i].moves.pose();
-    result.each[i].after = after.each[i];
-  }
-  result.all.after = after.all;
-  Report(progress, 1.0);
-  return result;
+  return WithOpenCv([&] { return Align(mesh, common, textures, std::move(result), progress); });
 }
 
 }  // namespace posespace

@@ -22,8 +22,8 @@ struct ReducedTexture {
   bool plain = true;  // painted in one colour, or not at all: there is nothing to align
 };
 
-// The texture averaged over blocks of pixels, so that neither side exceeds `size`; a plain one
-// comes without texels.  Cost: one pass over the pixels.
+// The texture averaged over blocks of pixels, so that neither side exceeds `size`.  Cost: one pass
+// over the pixels.
 ReducedTexture Reduce(const Texture& texture, int size);
 
 // The size to reduce textures to, and to align at, when there are this many drawings: 512, less for
@@ -51,7 +51,7 @@ struct Alignment {
 // field that follows the flow at features, as far as pictures agree about them, and is smooth
 // elsewhere carries the vertices; all drawings share the way evenly, so that none is bent alone.
 // Edges of the painting do not count as features.  A drawing keeps its old vertices where moving
-// them does not lower the ghost loss.
+// them does not lower the ghost loss; all do when that falls by less than a twentieth.
 //
 // Boundary vertices and landmarks stay.  Every triangle stays positive in every drawing (exact);
 // the star of no vertex has a smaller angle than min(before, 8 degrees).  Fewer than two drawings,

@@ -11,6 +11,7 @@ namespace posespace {
 namespace {
 
 constexpr double kMargin = 2.0;  // pixels around the common pose
+constexpr int kLeastSide = 64;   // pixels: image flow needs room for its patches
 
 }  // namespace
 
@@ -22,7 +23,7 @@ CommonPose::CommonPose(const Triangles& triangles, const Points& vertices, int s
   const double scale = longest > 0.0 ? size / longest : 1.0;
   raster_ = ((vertices.rowwise() - low.transpose()) * scale).array() + kMargin - 0.5;
   const auto pixels = [&](double length) {
-    return static_cast<int>(std::ceil(length * scale + 2.0 * kMargin));
+    return std::max(kLeastSide, static_cast<int>(std::ceil(length * scale + 2.0 * kMargin)));
   };
   ids_ = cv::Mat1i(pixels(extent.y()), pixels(extent.x()), -1);
 
@@ -32,6 +33,7 @@ CommonPose::CommonPose(const Triangles& triangles, const Points& vertices, int s
     const auto [low_y, high_y] = std::minmax({corner(0).y(), corner(1).y(), corner(2).y()});
     const Eigen::Vector3d origin = Barycentric(t, {0.0, 0.0});
     const Eigen::Vector3d along = Barycentric(t, {1.0, 0.0}) - origin;
+    if (!along.allFinite()) continue;  // an area too small to divide by
     for (int y = static_cast<int>(std::ceil(low_y)); y <= high_y; ++y) {
       // The pixels of the row whose three weights are not negative.
       const Eigen::Vector3d weights = Barycentric(t, {0.0, static_cast<double>(y)});
@@ -41,6 +43,7 @@ CommonPose::CommonPose(const Triangles& triangles, const Points& vertices, int s
         if (along[k] < 0.0) last = std::min(last, -weights[k] / along[k]);
         if (along[k] == 0.0 && weights[k] < 0.0) last = -1.0;
       }
+      if (!(first <= last)) continue;
       for (int x = static_cast<int>(std::ceil(first)); x <= last; ++x) ids_(y, x) = t;
     }
   }

@@ -11,6 +11,7 @@
 #include "drawing/outline_colours.h"
 #include "drawing/pixel_placement.h"
 #include "drawing/raster_ring.h"
+#include "drawing/with_opencv.h"
 #include "drawing/working_picture.h"
 #include "geometry/polygon.h"
 
@@ -229,14 +230,7 @@ Result<Outline> CheckedTrace(const Image& image, const PixelPlacement& placement
   if (options.working_size < kMinWorkingSize || options.working_size > kMaxWorkingSize) {
     return OutOfRange("working_size", options.working_size, kMinWorkingSize, kMaxWorkingSize);
   }
-  // Pictures are traced side by side; OpenCV's own threads would only get in the way of streams.
-  static const bool one_thread = (cv::setNumThreads(1), true);
-  static_cast<void>(one_thread);
-  try {
-    return Trace(image, placement, options);
-  } catch (const cv::Exception& exception) {
-    return Error{ErrorCode::kInternal, std::string("OpenCV: ") + exception.what(), {}};
-  }
+  return WithOpenCv([&] { return Trace(image, placement, options); });
 }
 
 }  // namespace

@@ -276,7 +276,9 @@ void ToProto(const BuildSummary& summary, v1::BuildReport* report) {
   for (std::size_t k = 0; k < count; ++k) {
     (*report->mutable_confidence())[summary.shape_ids[k]] = mapping.confidence[k];
   }
-  for (std::size_t k = 0; k < mapping.ghosts_before.size(); ++k) {
+  const std::size_t losses = std::min(
+      {mapping.ghosts_before.size(), mapping.ghosts_after.size(), summary.shape_ids.size() + 1});
+  for (std::size_t k = 0; k < losses; ++k) {
     v1::GhostLoss& loss = k == 0 ? *report->mutable_ghost_loss()
                                  : (*report->mutable_ghost_losses())[summary.shape_ids[k - 1]];
     loss.set_before(mapping.ghosts_before[k]);

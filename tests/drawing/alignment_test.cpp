@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "geometry/polygon.h"
@@ -244,6 +245,13 @@ TEST(AlignInteriors, LeavesDrawingsWithoutColoursAlone) {
   }
 }
 
+TEST(AlignInteriors, AlignsDrawingsBesideOneInOneColour) {
+  const CompatibleMesh mesh = SquareMesh(3);
+  const auto aligned = Align(mesh, {Face(74, 80), Face(86, 80), PictureOf(kSide, kSide, kSkin)});
+  ASSERT_THAT(aligned, Succeeds());
+  EXPECT_NEAR(MeanWay(aligned->poses[0], aligned->poses[1], {74, 80}, 15.0).x(), 12.0, 2.0);
+}
+
 TEST(AlignInteriors, StaysFiniteWhenOneDrawingIsEmptyOrInOneColour) {
   const CompatibleMesh mesh = SquareMesh(2);
   for (const Image& other : {PictureOf(kSide, kSide), PictureOf(kSide, kSide, kInk)}) {
@@ -251,6 +259,23 @@ TEST(AlignInteriors, StaysFiniteWhenOneDrawingIsEmptyOrInOneColour) {
     ASSERT_THAT(aligned, Succeeds());
     for (const Points& pose : aligned->poses) EXPECT_TRUE(pose.allFinite());
     EXPECT_TRUE(std::isfinite(aligned->all.after));
+  }
+}
+
+TEST(AlignInteriors, TakesTinyAndThinDrawings) {
+  for (const auto& [width, height] : {std::pair(5, 5), std::pair(300, 3), std::pair(3, 300)}) {
+    CompatibleMesh mesh = SquareMesh(2);
+    for (Points& pose : mesh.poses) {
+      pose.col(0) *= width / double{kSide};
+      pose.col(1) *= height / double{kSide};
+    }
+    Image left = PictureOf(width, height, kSkin), right = left;
+    PaintBox(&left, 1, 1, std::max(1, width / 4), 1, kInk);
+    PaintBox(&right, width / 2, height / 2, 2, std::max(1, height / 4), kInk);
+    const auto aligned = Align(mesh, {left, right});
+    ASSERT_THAT(aligned, Succeeds());
+    mesh.poses = aligned->poses;
+    EXPECT_FALSE(FindDefect(mesh).has_value());
   }
 }
 
