@@ -68,6 +68,18 @@ v1::ShearLimit NumberOf(ShearLimit limit) {
   return v1::SHEAR_LIMIT_UNSPECIFIED;
 }
 
+v1::StretchBlend NumberOf(StretchBlend stretch) {
+  switch (stretch) {
+    case StretchBlend::kLinear:
+      return v1::STRETCH_BLEND_LINEAR;
+    case StretchBlend::kLog:
+      return v1::STRETCH_BLEND_LOG;
+    case StretchBlend::kMetric:
+      return v1::STRETCH_BLEND_METRIC;
+  }
+  return v1::STRETCH_BLEND_UNSPECIFIED;
+}
+
 void RingToMessage(const Ring& ring, v1::Ring* message) {
   for (const Point& point : ring) {
     message->add_coordinates(point.x);
@@ -154,6 +166,8 @@ void ToMessage(const BlendOptions& options, v1::BlendOptions* message) {
     message->clear_refits();
   }
   message->set_sigma(options.sigma);
+  message->set_stretch(NumberOf(options.stretch));
+  message->set_repair(options.repair);
 }
 
 void ToMessage(ShapeSource source, v1::PutShapeRequest* message) {
@@ -304,6 +318,7 @@ Frame FromMessage(const v1::Frame& message, const std::vector<std::string>& shap
   frame.weights = ByDrawing(message.weights(), shape_ids);
   frame.texture_weights = ByDrawing(message.texture_weights(), shape_ids);
   frame.folds = message.folds();
+  frame.mended = message.mended();
   frame.revision = revision;
   return frame;
 }

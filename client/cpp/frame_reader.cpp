@@ -83,6 +83,8 @@ Field ReadFrame(CodedInputStream* input, FrameItems* items, FrameItems::Item* it
         return ReadNumbers(input, items, &item->textures_begin, &item->textures_end);
       case Varint(v1::Frame::kFoldsFieldNumber):
         return ReadValue<std::int32_t, Wire::TYPE_INT32>(input, &item->folds);
+      case Varint(v1::Frame::kMendedFieldNumber):
+        return ReadValue<std::int32_t, Wire::TYPE_INT32>(input, &item->mended);
       default:
         return Field::kUnknown;
     }
@@ -130,7 +132,7 @@ FrameItems::Item& FrameItems::Add() {
   if (count == items.size()) items.emplace_back();
   Item& item = items[count++];
   item.slot = item.tag = 0;
-  item.folds = 0;
+  item.folds = item.mended = 0;
   item.vertices_begin = item.vertices_end = floats;
   item.weights_begin = item.weights_end = numbers.size();
   item.textures_begin = item.textures_end = numbers.size();

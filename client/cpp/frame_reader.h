@@ -19,7 +19,7 @@ struct FrameItems {
   struct Item {
     std::uint32_t slot;
     std::uint32_t tag;
-    std::int32_t folds;
+    std::int32_t folds, mended;
     std::size_t vertices_begin, vertices_end;  // in `vertices`
     int weights_begin, weights_end;            // in `numbers`
     int textures_begin, textures_end;          // in `numbers`

@@ -26,9 +26,8 @@ VertexParts PartsOf(const Triangles& triangles, int num_vertices) {
   return parts;
 }
 
-Result<GradientFit> GradientFit::Prepare(const Triangles& triangles, const VertexParts& parts,
-                                         const Eigen::MatrixXd& gradients,
-                                         const Eigen::VectorXd& masses) {
+SparseFactor::Matrix NormalMatrix(const Triangles& triangles, const VertexParts& parts,
+                                  const Eigen::MatrixXd& gradients, const Eigen::VectorXd& masses) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<std::size_t>(triangles.rows()) * 9 + parts.count);
   std::vector<double> stiffest(static_cast<std::size_t>(parts.count), 0.0);
@@ -55,8 +54,15 @@ Result<GradientFit> GradientFit::Prepare(const Triangles& triangles, const Verte
   const auto num_vertices = static_cast<Eigen::Index>(parts.part_of.size());
   SparseFactor::Matrix normal(num_vertices, num_vertices);
   normal.setFromTriplets(entries.begin(), entries.end());
-  auto factor = TRY(SparseFactor::Factor(normal));
-  return GradientFit(triangles, num_vertices, masses.asDiagonal() * gradients, std::move(factor));
+  return normal;
+}
+
+Result<GradientFit> GradientFit::Prepare(const Triangles& triangles, const VertexParts& parts,
+                                         const Eigen::MatrixXd& gradients,
+                                         const Eigen::VectorXd& masses) {
+  auto factor = TRY(SparseFactor::Factor(NormalMatrix(triangles, parts, gradients, masses)));
+  return GradientFit(triangles, static_cast<Eigen::Index>(parts.part_of.size()),
+                     masses.asDiagonal() * gradients, std::move(factor));
 }
 
 Eigen::MatrixXd GradientFit::Solve(const Eigen::MatrixXd& targets) const {
@@ -72,7 +78,7 @@ Eigen::MatrixXd GradientFit::Solve(const Eigen::MatrixXd& targets) const {
   return factor_.Solve(right);
 }
 
-void GradientFit::WeightedMaps(const Eigen::MatrixXd& vertices, Eigen::MatrixXd* maps) const {
+void GradientFit::WeightedMaps(const Points& vertices, Eigen::MatrixXd* maps) const {
   maps->resize(triangles_.rows(), 4);
   for (Eigen::Index t = 0; t < triangles_.rows(); ++t) {
     double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;

@@ -18,6 +18,13 @@ struct VertexParts {
 };
 VertexParts PartsOf(const Triangles& triangles, int num_vertices);
 
+// The matrix of min_V sum_t mass_t |J_t V - target_t|^2, J_t the linear map from rest triangle t:
+// sum_t mass_t J_t'J_t, and a spring to 0 at the first vertex of each part.
+//
+// Requires  as GradientFit::Prepare.
+SparseFactor::Matrix NormalMatrix(const Triangles& triangles, const VertexParts& parts,
+                                  const Eigen::MatrixXd& gradients, const Eigen::VectorXd& masses);
+
 // Finds the mesh whose triangles' maps are nearest to given ones:
 // min_V sum_t mass_t |J_t V - target_t|^2, J_t the linear map from rest triangle t.
 //
@@ -35,8 +42,11 @@ class GradientFit {
   // V x 2 for T x 4 targets (xx, xy, yx, yy); the first vertex of each part lies at 0.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& targets) const;
 
+  // V x 2 for a right-hand side of the problem's matrix (NormalMatrix).
+  Eigen::MatrixXd SolveNormal(const Eigen::MatrixXd& right) const { return factor_.Solve(right); }
+
   // T x 4: mass_t J_t of V x 2 vertices.
-  void WeightedMaps(const Eigen::MatrixXd& vertices, Eigen::MatrixXd* maps) const;
+  void WeightedMaps(const Points& vertices, Eigen::MatrixXd* maps) const;
 
  private:
   GradientFit(Triangles triangles, Eigen::Index num_vertices, Eigen::MatrixXd gradients,

@@ -3,81 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string>
 
 #include "geometry/polygon.h"
+#include "interpolation/fold_repair.h"
 #include "interpolation/gradient_fit.h"
-#include "interpolation/triangle_maps.h"
 
 namespace posespace {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
-// A solution that folds so much that less than this share of its triangles' areas is left has no
-// useful centroid; its triangles then count with their absolute areas.
-constexpr double kLeastArea = 1e-3;
-
-// A row per part: the centroid of its area, sum of signed triangle areas times triangle centroids
-// over the sum of signed areas.
-template <typename Vertices>
-Points PartCentroids(const Triangles& triangles, const Vertices& vertices,
-                     const VertexParts& parts) {
-  struct Moment {
-    Point origin = Point::Zero(), signed_sum = Point::Zero(), absolute_sum = Point::Zero();
-    double signed_area = 0.0, absolute_area = 0.0;
-  };
-  std::vector<Moment> moments(static_cast<std::size_t>(parts.count));
-  for (const auto& triangle : triangles.rowwise()) {
-    const Point a = vertices.row(triangle[0]).transpose();
-    const Point b = vertices.row(triangle[1]).transpose();
-    const Point c = vertices.row(triangle[2]).transpose();
-    const double area = Cross(a, b, c);
-    Moment& moment = moments[parts.part_of[triangle[0]]];
-    if (moment.absolute_area == 0.0) moment.origin = a;  // keeps digits far from (0, 0)
-    const Point arm = ((a - moment.origin) + (b - moment.origin) + (c - moment.origin)) / 3.0;
-    moment.signed_sum += area * arm;
-    moment.signed_area += area;
-    moment.absolute_sum += std::abs(area) * arm;
-    moment.absolute_area += std::abs(area);
-  }
-  Points centroids(parts.count, 2);
-  for (int part = 0; part < parts.count; ++part) {
-    const Moment& moment = moments[part];
-    Point centroid = moment.origin;
-    if (moment.signed_area > kLeastArea * moment.absolute_area) {
-      centroid += moment.signed_sum / moment.signed_area;
-    } else if (moment.absolute_area > 0.0) {
-      centroid += moment.absolute_sum / moment.absolute_area;
-    }
-    centroids.row(part) = centroid;
-  }
-  return centroids;
-}
-
-// Adds whole turns to the rotations of `pose` so that each edge-connected part's area-weighted mean
-// lies in (-pi, pi] plus `turns`, and returns the whole mesh's mean before `turns`.  Half a turn
-// stays +pi whatever the rounding.
-double WrapRotations(const std::vector<int>& part_of, int pose, int turns, TriangleMaps* rigid,
-                     TriangleMaps* paper) {
-  const int num_parts = 1 + *std::max_element(part_of.begin(), part_of.end());
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(num_parts), area = Eigen::VectorXd::Zero(num_parts);
-  for (std::size_t t = 0; t < part_of.size(); ++t) {
-    sum[part_of[t]] += rigid->areas[t] * rigid->rotations(t, pose);
-    area[part_of[t]] += rigid->areas[t];
-  }
-  constexpr double kRounding = 1e-9;
-  const Eigen::VectorXd excess = (sum.cwiseQuotient(area) / kTurn).unaryExpr([](double mean_turns) {
-    return std::ceil(mean_turns - 0.5 - kRounding);
-  });
-  for (std::size_t t = 0; t < part_of.size(); ++t) {
-    const double shift = kTurn * (turns - excess[part_of[t]]);
-    rigid->rotations(t, pose) += shift;
-    paper->rotations(t, pose) += shift;
-  }
-  return (sum - kTurn * area.cwiseProduct(excess)).sum() / area.sum();
-}
 
 // R(angle) S of every triangle, with the rotations as cosines and sines.
 void AssembleTargets(const Eigen::ArrayXd& cosines, const Eigen::ArrayXd& sines,
@@ -107,87 +39,87 @@ void RefitRotations(const Eigen::MatrixXd& maps, const Eigen::ArrayXd& stretch,
   }
 }
 
+// f of a symmetric 2 x 2 matrix (xx, xy, yy): of its eigenvalues, its axes kept.
+template <typename Function>
+Eigen::Array3d OfSymmetric(const Eigen::Array3d& matrix, Function f) {
+  const double mean = 0.5 * (matrix[0] + matrix[2]), half = 0.5 * (matrix[0] - matrix[2]);
+  const double radius = std::hypot(half, matrix[1]);
+  const double high = f(mean + radius), low = f(mean - radius);
+  const double slope = radius > 0.0 ? 0.5 * (high - low) / radius : 0.0;
+  const double middle = 0.5 * (high + low);
+  return {middle + slope * half, slope * matrix[1], middle - slope * half};
+}
+
+// The blended stretches, 3 T: all xx, then all xy, then all yy.
+Eigen::ArrayXd MixStretches(const Eigen::MatrixXd& stretches, const Eigen::VectorXd& weights,
+                            StretchBlend blend) {
+  if (blend == StretchBlend::kLinear) return stretches * weights;
+  static constexpr double kLeast = 1e-12;  // of a stretch, so that its logarithm is finite
+  const Eigen::Index count = stretches.rows() / 3;
+  Eigen::ArrayXd mixed(stretches.rows());
+  const auto of_triangle = [count](const auto& column, Eigen::Index t) {
+    return Eigen::Array3d(column[t], column[count + t], column[2 * count + t]);
+  };
+  for (Eigen::Index t = 0; t < count; ++t) {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      const Eigen::Array3d stretch = of_triangle(stretches.col(i), t);
+      sum += weights[i] *
+             (blend == StretchBlend::kLog
+                  ? OfSymmetric(stretch, [](double x) { return std::log(std::max(x, kLeast)); })
+                  : OfSymmetric(stretch, [](double x) { return x * x; }));
+    }
+    const Eigen::Array3d root =
+        blend == StretchBlend::kLog
+            ? OfSymmetric(sum, [](double x) { return std::exp(x); })
+            : OfSymmetric(sum, [](double x) { return std::sqrt(std::max(x, 0.0)); });
+    for (int k = 0; k < 3; ++k) mixed[k * count + t] = root[k];
+  }
+  return mixed;
+}
+
+// Orientation(a, b, c) > 0, without asking it where double rounding cannot change the answer.
+bool IsPositive(const Point& a, const Point& b, const Point& c) {
+  const double left = (b.x() - a.x()) * (c.y() - a.y()), right = (b.y() - a.y()) * (c.x() - a.x());
+  constexpr double kRounding = 4e-15;  // several times what it can be
+  const double doubt = kRounding * (std::abs(left) + std::abs(right));
+  if (left - right > doubt) return true;
+  if (right - left > doubt) return false;
+  return Orientation(a, b, c) > 0;
+}
+
 }  // namespace
 
 struct RigidBlend::Prepared {
-  // A rest shape, the poses measured against it, and its prefactored problem.
-  struct Model {
-    Eigen::MatrixXd rotations;  // T x N
-    Eigen::MatrixXd stretches;  // 3 T x N
-    GradientFit fit;
-  };
-
-  Triangles triangles;
-  VertexParts parts;
-  std::vector<Points> poses;
-  std::vector<Points> centroids;  // of each pose, a row per part
-  Model rigid;
-  Model paper;
-  std::vector<double> mean_rotations;
-  std::vector<int> turns;
+  RigidModel model;
+  GradientFit rigid_fit;
+  GradientFit paper_fit;
 
   Points Linear(const Eigen::VectorXd& weights) const;
-  Points Rigid(const Model& model, const Eigen::VectorXd& weights, ShearLimit shear_limit,
-               int refits) const;
+  Points Rigid(const TriangleMaps& maps, const GradientFit& fit, const Eigen::VectorXd& weights,
+               const BlendOptions& options) const;
+  void Place(const Eigen::VectorXd& weights, Points* vertices) const;
 };
 
 Result<RigidBlend> RigidBlend::Prepare(const CompatibleMesh& mesh, std::vector<int> turns) {
-  const int num_poses = mesh.num_poses();
-  turns.resize(turns.empty() ? num_poses : turns.size(), 0);
-  if (static_cast<int>(turns.size()) != num_poses) {
-    return Error{ErrorCode::kSizeMismatch,
-                 std::to_string(turns.size()) + " whole turns were given for " +
-                     std::to_string(num_poses) + " poses",
-                 {}};
-  }
-  if (mesh.num_triangles() == 0) return Error{ErrorCode::kInternal, "the mesh is empty", {}};
-  for (int t = 0; t < mesh.num_triangles(); ++t) {
-    const auto triangle = mesh.triangles.row(t);
-    const bool has_area = std::any_of(mesh.poses.begin(), mesh.poses.end(), [&](const Points& p) {
-      return Cross(p.row(triangle[0]), p.row(triangle[1]), p.row(triangle[2])) > 0.0;
-    });
-    if (!has_area) {
-      return Error{ErrorCode::kInternal,
-                   "triangle " + std::to_string(t) + " is degenerate in every pose",
-                   {}};
-    }
-  }
-
-  TriangleMaps rigid = MeasureTriangles(mesh, RestShape::kMean);
-  TriangleMaps paper = MeasureTriangles(mesh, RestShape::kFirstPose);
-  const std::vector<int> triangle_parts = EdgeConnectedParts(mesh.triangles);
-  std::vector<double> mean_rotations;
-  for (int i = 0; i < num_poses; ++i) {
-    mean_rotations.push_back(WrapRotations(triangle_parts, i, turns[i], &rigid, &paper));
-  }
-
-  VertexParts parts = PartsOf(mesh.triangles, mesh.num_vertices());
-  std::vector<Points> centroids;
-  for (const Points& pose : mesh.poses) {
-    centroids.push_back(PartCentroids(mesh.triangles, pose, parts));
-  }
-
+  RigidModel model = TRY(MeasurePoses(mesh, std::move(turns)));
   const Eigen::VectorXd equal = Eigen::VectorXd::Ones(mesh.num_triangles());
-  auto rigid_fit = TRY(GradientFit::Prepare(mesh.triangles, parts, rigid.gradients, rigid.areas));
-  auto paper_fit = TRY(GradientFit::Prepare(mesh.triangles, parts, paper.gradients, equal));
+  auto rigid_fit = TRY(
+      GradientFit::Prepare(mesh.triangles, model.parts, model.rigid.gradients, model.rigid.areas));
+  auto paper_fit =
+      TRY(GradientFit::Prepare(mesh.triangles, model.parts, model.paper.gradients, equal));
   return RigidBlend(std::make_shared<const Prepared>(
-      Prepared{mesh.triangles,
-               std::move(parts),
-               mesh.poses,
-               std::move(centroids),
-               {std::move(rigid.rotations), std::move(rigid.stretches), std::move(rigid_fit)},
-               {std::move(paper.rotations), std::move(paper.stretches), std::move(paper_fit)},
-               std::move(mean_rotations),
-               std::move(turns)}));
+      Prepared{std::move(model), std::move(rigid_fit), std::move(paper_fit)}));
 }
 
 Points RigidBlend::At(const Eigen::VectorXd& weights, const BlendOptions& options) const {
+  const auto& [model, rigid_fit, paper_fit] = *prepared_;
   switch (options.method) {
     case BlendMethod::kRigid:
-      return prepared_->Rigid(prepared_->rigid, weights, options.shear_limit,
-                              std::clamp(options.refits, 0, 3));
+      return prepared_->Rigid(model.rigid, rigid_fit, weights, options);
     case BlendMethod::kPaper:
-      return prepared_->Rigid(prepared_->paper, weights, options.shear_limit, 0);
+      return prepared_->Rigid(model.paper, paper_fit, weights,
+                              {.shear_limit = options.shear_limit, .refits = 0});
     case BlendMethod::kLinear:
       break;
   }
@@ -195,46 +127,101 @@ Points RigidBlend::At(const Eigen::VectorXd& weights, const BlendOptions& option
 }
 
 Points RigidBlend::Prepared::Linear(const Eigen::VectorXd& weights) const {
-  Points vertices = weights[0] * poses[0];
-  for (std::size_t i = 1; i < poses.size(); ++i) vertices += weights[i] * poses[i];
+  Points vertices = weights[0] * model.poses[0];
+  for (std::size_t i = 1; i < model.poses.size(); ++i) vertices += weights[i] * model.poses[i];
   return vertices;
 }
 
-Points RigidBlend::Prepared::Rigid(const Model& model, const Eigen::VectorXd& weights,
-                                   ShearLimit shear_limit, int refits) const {
+Points RigidBlend::Prepared::Rigid(const TriangleMaps& maps, const GradientFit& fit,
+                                   const Eigen::VectorXd& weights,
+                                   const BlendOptions& options) const {
   // alpha(w) = sum w_i alpha_i  and  S(w) = sum w'_i S_i.
-  const Eigen::ArrayXd angles = model.rotations * weights;
-  const Eigen::ArrayXd stretch = model.stretches * LimitedWeights(weights, shear_limit);
+  const Eigen::ArrayXd angles = maps.rotations * weights;
+  const Eigen::ArrayXd stretch =
+      MixStretches(maps.stretches, LimitedWeights(weights, options.shear_limit), options.stretch);
   Eigen::ArrayXd cosines = angles.cos(), sines = angles.sin();
 
   // V(w), then R_t = polar(J_t S_t) and V again.
-  Eigen::MatrixXd maps;
-  AssembleTargets(cosines, sines, stretch, &maps);
-  Eigen::MatrixXd vertices = model.fit.Solve(maps);
-  for (int refit = 0; refit < refits; ++refit) {
-    model.fit.WeightedMaps(vertices, &maps);
-    RefitRotations(maps, stretch, &cosines, &sines);
-    AssembleTargets(cosines, sines, stretch, &maps);
-    vertices = model.fit.Solve(maps);
+  Eigen::MatrixXd targets;
+  AssembleTargets(cosines, sines, stretch, &targets);
+  Points vertices = fit.Solve(targets);
+  for (int refit = 0; refit < std::clamp(options.refits, 0, 3); ++refit) {
+    fit.WeightedMaps(vertices, &targets);
+    RefitRotations(targets, stretch, &cosines, &sines);
+    AssembleTargets(cosines, sines, stretch, &targets);
+    vertices = fit.Solve(targets);
   }
 
-  // Each part's centroid goes to sum w_i c_i.
-  Points shifts = -PartCentroids(triangles, vertices, parts);
-  for (std::size_t i = 0; i < centroids.size(); ++i) shifts += weights[i] * centroids[i];
-  Points placed = vertices;
-  for (Eigen::Index v = 0; v < placed.rows(); ++v) placed.row(v) += shifts.row(parts.part_of[v]);
-  return placed;
+  Place(weights, &vertices);
+  return vertices;
 }
 
-const std::vector<double>& RigidBlend::mean_rotations() const { return prepared_->mean_rotations; }
+// Each part's centroid goes to sum w_i c_i.
+void RigidBlend::Prepared::Place(const Eigen::VectorXd& weights, Points* vertices) const {
+  Points shifts = -PartCentroids(model.triangles, *vertices, model.parts);
+  for (std::size_t i = 0; i < model.centroids.size(); ++i) {
+    shifts += weights[i] * model.centroids[i];
+  }
+  for (Eigen::Index v = 0; v < vertices->rows(); ++v) {
+    vertices->row(v) += shifts.row(model.parts.part_of[v]);
+  }
+}
 
-const std::vector<int>& RigidBlend::turns() const { return prepared_->turns; }
+Points RigidBlend::Mended(const Points& vertices, const Eigen::VectorXd& weights,
+                          const BlendOptions& options) const {
+  const auto& [model, rigid_fit, paper_fit] = *prepared_;
+  const bool is_paper = options.method == BlendMethod::kPaper;
+  const TriangleMaps& maps = is_paper ? model.paper : model.rigid;
+  const GradientFit& fit = is_paper ? paper_fit : rigid_fit;
+  const Eigen::ArrayXd stretch =
+      MixStretches(maps.stretches, LimitedWeights(weights, options.shear_limit),
+                   is_paper ? StretchBlend::kLinear : options.stretch);
+
+  // The target triangle is the rest triangle, stretched: J = K S.
+  const Eigen::Index count = maps.areas.size();
+  TargetTriangles targets{maps.gradients, maps.areas};
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const double xx = stretch[t], xy = stretch[count + t], yy = stretch[2 * count + t];
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 0.0 && xx > 0.0)) return vertices;
+    for (int k = 0; k < 3; ++k) {
+      const double gx = maps.gradients(t, 2 * k), gy = maps.gradients(t, 2 * k + 1);
+      targets.gradients(t, 2 * k) = (yy * gx - xy * gy) / determinant;
+      targets.gradients(t, 2 * k + 1) = (xx * gy - xy * gx) / determinant;
+    }
+    targets.areas[t] *= determinant;
+  }
+  Points mended = Unfolded(model.triangles, targets, vertices,
+                           [&fit](const Eigen::MatrixXd& right) { return fit.SolveNormal(right); });
+  prepared_->Place(weights, &mended);
+  return mended;
+}
+
+const std::vector<double>& RigidBlend::mean_rotations() const {
+  return prepared_->model.mean_rotations;
+}
+
+const std::vector<int>& RigidBlend::turns() const { return prepared_->model.turns; }
+
+const RigidModel& RigidBlend::model() const { return prepared_->model; }
 
 int CountFolds(const Triangles& triangles, const Points& vertices) {
   int folds = 0;
   for (const auto& triangle : triangles.rowwise()) {
-    folds += Orientation(vertices.row(triangle[0]), vertices.row(triangle[1]),
-                         vertices.row(triangle[2])) <= 0;
+    folds += !IsPositive(vertices.row(triangle[0]), vertices.row(triangle[1]),
+                         vertices.row(triangle[2]));
+  }
+  return folds;
+}
+
+int CountFolds(const Triangles& triangles, std::span<const float> coordinates) {
+  const auto point = [&](int vertex) {
+    const std::size_t at = 2 * static_cast<std::size_t>(vertex);
+    return Point(coordinates[at], coordinates[at + 1]);
+  };
+  int folds = 0;
+  for (const auto& triangle : triangles.rowwise()) {
+    folds += !IsPositive(point(triangle[0]), point(triangle[1]), point(triangle[2]));
   }
   return folds;
 }

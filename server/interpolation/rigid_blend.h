@@ -3,13 +3,18 @@
 #define POSESPACE_INTERPOLATION_RIGID_BLEND_H_
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "geometry/mesh.h"
 #include "geometry/result.h"
+#include "interpolation/rigid_model.h"
 #include "interpolation/shear_limit.h"
 
 namespace posespace {
+
+// A frame's vertices, as they travel.
+using FloatPoints = Eigen::Matrix<float, Eigen::Dynamic, 2, Eigen::RowMajor>;  // V x 2
 
 enum class BlendMethod {
   kRigid,   // ours: mean rest shape, area weights, rotation refits
@@ -17,20 +22,31 @@ enum class BlendMethod {
   kPaper,   // the paper's: rest shape = pose 0, unweighted, no refits
 };
 
+// How stretches are mixed (method kRigid).
+enum class StretchBlend {
+  kLinear,  // sum w'_i S_i: lengths in the mean
+  kLog,     // exp(sum w'_i log S_i): lengths multiply; never inverts, whatever the weights
+  kMetric,  // sqrt(sum w'_i S_i^2): squared lengths in the mean
+};
+
 struct BlendOptions {
   BlendMethod method = BlendMethod::kRigid;
   ShearLimit shear_limit = ShearLimit::kBand;
   int refits = 3;  // 0 .. 3 rotation refits (method kRigid)
+  StretchBlend stretch = StretchBlend::kLinear;
+  bool repair = false;  // unfold the result where it folds, at the cost of milliseconds
+
+  bool operator==(const BlendOptions&) const = default;
 };
 
 // Weights -> vertices: interpolates each triangle's rotation and stretch separately and finds the
 // mesh that fits them best.
 //
 // Per triangle t and pose i, the map from a rest triangle to the pose is split as R(alpha) S, S
-// symmetric.  A blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights,
-// and solves min_V sum_t area_t |J_t V - target_t|^2, area_t of the rest triangle, with one
-// prefactored matrix; each refit replaces the rotations by those nearest to J_t S_t of the last
-// solution and solves again.
+// symmetric.  A blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights
+// (the stretch may be mixed otherwise), and solves min_V sum_t area_t |J_t V - target_t|^2, area_t
+// of the rest triangle, with one prefactored matrix; each refit replaces the rotations by those
+// nearest to J_t S_t of the last solution and solves again.
 //
 // Rest shape    The metric of a rest triangle is the mean of the poses' E_i'E_i (E_i its edge
 //               vectors in pose i), so no pose is privileged; it is turned so that pose 0 maps it
@@ -63,13 +79,23 @@ class RigidBlend {
   static Result<RigidBlend> Prepare(const CompatibleMesh& mesh, std::vector<int> turns = {});
 
   // V x 2 vertices in drawing pixels for N finite weights that sum to one.
-  // Cost O(N T) to assemble and one back-substitution per solve.
+  // Cost O(N T) to assemble and one back-substitution per solve; kLog takes a logarithm a triangle
+  // and pose, too.
   Points At(const Eigen::VectorXd& weights, const BlendOptions& options = {}) const;
+
+  // `vertices`, a blend at these weights, unfolded (fold_repair.h): with each triangle positive if
+  // that can be, and as near to its target as the others allow.  Unchanged where targets themselves
+  // have no area, as extrapolation without shear limiting makes them.  The targets of kLinear are
+  // kRigid's.
+  Points Mended(const Points& vertices, const Eigen::VectorXd& weights,
+                const BlendOptions& options) const;
 
   // The area-weighted mean rotation of each pose relative to the rest shape, radians, in (-pi, pi]
   // before turns.
   const std::vector<double>& mean_rotations() const;
   const std::vector<int>& turns() const;
+
+  const RigidModel& model() const;  // what batch_blend.h blends, too
 
  private:
   struct Prepared;
@@ -86,6 +112,7 @@ std::vector<int> TurnsAlongPlacements(const std::vector<double>& mean_rotations,
 
 // How many triangles of `vertices` (V x 2) are not positive.
 int CountFolds(const Triangles& triangles, const Points& vertices);
+int CountFolds(const Triangles& triangles, std::span<const float> coordinates);  // x0 y0 x1 y1 ...
 
 }  // namespace posespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/animate_stream.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "rpc/query_convert.h"
@@ -9,7 +10,7 @@ namespace posespace {
 namespace {
 
 constexpr int kAhead = 32;  // frames; a slow reader holds some 100 kB
-constexpr int kTurn = 8;    // frames, about a millisecond
+constexpr int kTurn = 16;   // frames; solved together
 
 }  // namespace
 
@@ -32,8 +33,8 @@ Result<void> AnimateStream::Begin(const Session& session, const Limits& limits) 
 }
 
 Result<v1::AnimateResponse> AnimateStream::Make(int index) {
+  const Frame frame = TRY(FrameAt(index));
   const Query query = frames_->At(index);
-  const Frame frame = TRY(pose_space_->Blend(query));
   const Point& at = std::get<Point>(query.position);
   v1::AnimateResponse response;
   response.set_index(index);
@@ -43,6 +44,18 @@ Result<v1::AnimateResponse> AnimateStream::Make(int index) {
   ToProto(frame, /*with_weights=*/true, response.mutable_frame());
   response.set_revision(pose_space_->revision());
   return response;
+}
+
+Result<Frame> AnimateStream::FrameAt(int index) {
+  if (index >= first_solved_ + static_cast<int>(solved_.size())) {
+    std::vector<Query> queries;
+    for (int k = index; k < std::min(index + kTurn, frames_->count()); ++k) {
+      queries.push_back(frames_->At(k));
+    }
+    solved_ = pose_space_->BlendAll(queries);
+    first_solved_ = index;
+  }
+  return std::move(solved_[index - first_solved_]);
 }
 
 AnimateStream::Clock::time_point AnimateStream::Due(int index) const {

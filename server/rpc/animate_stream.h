@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "posespace/v1/pose_service.pb.h"
 #include "rpc/animation_frames.h"
@@ -23,11 +24,14 @@ class AnimateStream final : public SequenceStream<v1::AnimateResponse> {
   Result<void> Begin(const Session& session, const Limits& limits);
   Result<v1::AnimateResponse> Make(int index) override;
   Clock::time_point Due(int index) const override;
+  Result<Frame> FrameAt(int index);
 
   const v1::AnimateRequest& request_;  // gRPC keeps it for the call
   std::shared_ptr<const PoseSpace> pose_space_;
   std::optional<AnimationFrames> frames_;
   Clock::time_point start_;
+  std::vector<Result<Frame>> solved_;  // together, a few ahead of what was asked for
+  int first_solved_ = 0;
 };
 
 }  // namespace posespace

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/play_slots.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "rpc/query_convert.h"
 #include "rpc/shown_error.h"
@@ -115,35 +117,58 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Tags& supe
   v1::PlayResponse::FrameResult* const result = response.mutable_frame_result();
   result->set_frame_id(tick.frame_id());
   result->mutable_items()->Reserve(tick.items_size());
+  std::vector<const PoseSpace*> pose_spaces;  // of each item that is still to be answered
   for (const v1::PlayRequest::Item& item : tick.items()) {
     v1::PlayResponse::ItemResult* const answer = result->add_items();
     answer->set_slot(item.slot());
     answer->set_tag(item.tag());
+    const auto slot = slots_.find(item.slot());
+    const PoseSpace* const pose_space =
+        slot == slots_.end() ? nullptr : slot->second.pose_space.get();
+    pose_spaces.push_back(nullptr);
     if (superseded.contains({item.slot(), item.tag()})) {
       SetError(Error{ErrorCode::kSuperseded, "a later frame asks for this item again", {}}, answer);
       result->set_superseded(result->superseded() + 1);
+    } else if (pose_space == nullptr) {
+      const std::string name = std::to_string(item.slot());
+      SetError(Error{ErrorCode::kSlotNotBound, "slot " + name + " has no session", {}}, answer);
     } else {
-      Blend(item, tick.with_weights(), answer);
+      pose_spaces.back() = pose_space;
     }
+  }
+  std::vector<int> together;
+  for (int first = 0; first < tick.items_size(); ++first) {
+    const PoseSpace* const pose_space = pose_spaces[first];
+    if (pose_space == nullptr) continue;
+    together.clear();
+    for (int k = first; k < tick.items_size(); ++k) {
+      if (pose_spaces[k] != pose_space) continue;
+      together.push_back(k);
+      pose_spaces[k] = nullptr;
+    }
+    BlendTogether(*pose_space, tick, together, result);
   }
   send(std::move(response));
   return {};
 }
 
-void PlaySlots::Blend(const v1::PlayRequest::Item& item, bool with_weights,
-                      v1::PlayResponse::ItemResult* result) const {
-  const auto slot = slots_.find(item.slot());
-  auto frame = Guarded([&]() -> Result<Frame> {
-    if (slot == slots_.end()) {
-      return Error{
-          ErrorCode::kSlotNotBound, "slot " + std::to_string(item.slot()) + " has no session", {}};
-    }
-    return BlendQuery(*slot->second.pose_space, item.query(), "query", /*weights_only=*/false);
+void PlaySlots::BlendTogether(const PoseSpace& pose_space, const v1::PlayRequest::Tick& tick,
+                              std::span<const int> items,
+                              v1::PlayResponse::FrameResult* result) const {
+  std::vector<NamedQuery> queries;
+  for (const int k : items) queries.push_back({&tick.items(k).query(), "query"});
+  auto frames = Guarded([&]() -> Result<std::vector<Result<Frame>>> {
+    return BlendQueries(pose_space, queries, /*weights_only=*/false);
   });
-  if (frame) {
-    ToProto(*frame, with_weights, result->mutable_frame());
-  } else {
-    SetError(std::move(frame).error(), result);
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    v1::PlayResponse::ItemResult* const answer = result->mutable_items(items[k]);
+    if (!frames) {
+      SetError(frames.error(), answer);
+    } else if (Result<Frame>& frame = (*frames)[k]; frame) {
+      ToProto(*frame, tick.with_weights(), answer->mutable_frame());
+    } else {
+      SetError(std::move(frame).error(), answer);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -56,8 +57,9 @@ class PlaySlots {
   Result<Slot> Find(const v1::PlayRequest::Bind& bind);
   void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
   Result<void> Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded, const Send& send);
-  void Blend(const v1::PlayRequest::Item& item, bool with_weights,
-             v1::PlayResponse::ItemResult* result) const;
+  // Answers those items of a tick, which are of one pose space.
+  void BlendTogether(const PoseSpace& pose_space, const v1::PlayRequest::Tick& tick,
+                     std::span<const int> items, v1::PlayResponse::FrameResult* result) const;
 
   const Registry& registry_;
   const Limits limits_;

@@ -71,9 +71,12 @@ grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* contex
     const auto pose_space = TRY(session->Built());
     TRY(CheckRevision(*pose_space, request->revision()));
     TRY(CheckQueryCount(request->queries_size(), registry_.limits().max_queries));
+    std::vector<NamedQuery> queries;
     for (int k = 0; k < request->queries_size(); ++k) {
-      const Frame frame =
-          TRY(BlendQuery(*pose_space, request->queries(k), QueryField(k), request->weights_only()));
+      queries.push_back({&request->queries(k), QueryField(k)});
+    }
+    for (auto& blended : BlendQueries(*pose_space, queries, request->weights_only())) {
+      const Frame frame = TRY(std::move(blended));
       ToProto(frame, /*with_weights=*/true, response->add_frames());
     }
     response->set_revision(pose_space->revision());

@@ -2,7 +2,9 @@
 #ifndef POSESPACE_RPC_QUERY_CONVERT_H_
 #define POSESPACE_RPC_QUERY_CONVERT_H_
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "drawing/render.h"
 #include "geometry/result.h"
@@ -27,8 +29,17 @@ Result<void> CheckRevision(const PoseSpace& pose_space, const std::string& revis
 // The path of a request's query: "queries[3]".
 std::string QueryField(int index);
 
-// The blend of one query; `field` is its path, such as "queries[3]", and begins each field of an
-// error.
+// A query, and its path in the request, such as "queries[3]", which begins each field of an error.
+struct NamedQuery {
+  const v1::Query* query;
+  std::string field;
+};
+
+// The blend of each query, solved together (PoseSpace::BlendAll).
+std::vector<Result<Frame>> BlendQueries(const PoseSpace& pose_space,
+                                        std::span<const NamedQuery> queries, bool weights_only);
+
+// The blend of one query.
 Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
                          const std::string& field, bool weights_only);
 

@@ -14,6 +14,7 @@
 #include "drawing/decode.h"
 #include "drawing/png_file.h"
 #include "geometry/polygon.h"
+#include "interpolation/batch_blend.h"
 #include "interpolation/texture_weights.h"
 #include "session/interior_stage.h"
 #include "session/placements.h"
@@ -240,7 +241,7 @@ struct PoseSpace::Body {
   CompatibleMesh mesh;
   MappingReport report;  // of mapping alone
   std::vector<std::string> warnings;
-  RigidBlend blend;  // without turns
+  BatchBlend blend;  // without turns
 
   // Made for the first picture: most pose spaces are only ever blended, and pixels are large.
   const std::vector<RenderTexture>& Textures() const {
@@ -263,7 +264,7 @@ struct PoseSpace::State {
   Points placements;
   std::string revision;
   std::vector<int> turns;
-  RigidBlend blend;  // with turns
+  BatchBlend blend;  // with turns
   PoseWeights weights;
   MappingReport report;
   Box reach;
@@ -287,7 +288,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Build(const BuildInputs& inp
   }
 
   if (progress != nullptr) progress->EnterStage("weights", kMeshShare, 1.0);
-  auto blend = TRY(RigidBlend::Prepare(mapping.mesh));
+  auto blend = TRY(BatchBlend::Prepare(mapping.mesh));
   const std::shared_ptr<const Body> body(
       new Body{inputs.drawings, MeshDigest(inputs), std::move(mapping.mesh),
                std::move(mapping.report), std::move(warnings), std::move(blend)});
@@ -308,10 +309,10 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::Place(const std::shared_ptr<
   auto weights = TRY(PoseWeights::Fit(placements, {}, progress));
   if (IsCancelled(progress)) return Cancelled();
 
-  std::vector<int> turns = TurnsAlongPlacements(body->blend.mean_rotations(), placements);
-  auto blend = IsUpright(turns) ? body->blend : TRY(RigidBlend::Prepare(body->mesh, turns));
+  std::vector<int> turns = TurnsAlongPlacements(body->blend.exact().mean_rotations(), placements);
+  auto blend = IsUpright(turns) ? body->blend : TRY(BatchBlend::Prepare(body->mesh, turns));
 
-  const Box reach = ReachOf(body->mesh, blend, placements, progress);
+  const Box reach = ReachOf(body->mesh, blend.exact(), placements, progress);
   if (IsCancelled(progress)) return Cancelled();
   MappingReport report = body->report;
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
@@ -342,9 +343,9 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::FromParts(Parts parts) {
   }
   auto weights = PoseWeights::FromFit(parts.placements, std::move(parts.weights));
   if (!weights) return refuse(weights.error().message);
-  auto plain = RigidBlend::Prepare(parts.mesh);
+  auto plain = BatchBlend::Prepare(parts.mesh);
   if (!plain) return refuse(plain.error().message);
-  auto turned = IsUpright(parts.turns) ? plain : RigidBlend::Prepare(parts.mesh, parts.turns);
+  auto turned = IsUpright(parts.turns) ? plain : BatchBlend::Prepare(parts.mesh, parts.turns);
   if (!turned) return refuse(turned.error().message);
 
   const std::shared_ptr<const Body> body(
@@ -358,7 +359,7 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::FromParts(Parts parts) {
   return std::shared_ptr<const PoseSpace>(new PoseSpace(std::move(state)));
 }
 
-Result<Frame> PoseSpace::Blend(const Query& query, bool weights_only) const {
+Result<Frame> PoseSpace::Weigh(const Query& query) const {
   if (query.options.refits < 0 || query.options.refits > 3) {
     return Refused(ErrorCode::kInvalidOption, "options.refits",
                    "refits is " + std::to_string(query.options.refits) + ", not 0 to 3");
@@ -382,11 +383,43 @@ Result<Frame> PoseSpace::Blend(const Query& query, bool weights_only) const {
   const ShearLimit limit =
       query.options.shear_limit == ShearLimit::kOff ? ShearLimit::kBand : query.options.shear_limit;
   frame.texture_weights = TextureWeights(LimitedWeights(frame.weights, limit), query.sigma);
-
-  if (weights_only) return frame;
-  frame.vertices = state_->blend.At(frame.weights, query.options);
-  frame.folds = CountFolds(mesh().triangles, frame.vertices);
   return frame;
+}
+
+Result<Frame> PoseSpace::Blend(const Query& query, bool weights_only) const {
+  return std::move(BlendAll({&query, 1}, weights_only).front());
+}
+
+std::vector<Result<Frame>> PoseSpace::BlendAll(std::span<const Query> queries,
+                                               bool weights_only) const {
+  std::vector<Result<Frame>> frames;
+  frames.reserve(queries.size());
+  for (const Query& query : queries) frames.push_back(Weigh(query));
+  if (weights_only) return frames;
+
+  std::vector<BlendJob> jobs;
+  std::vector<Frame*> solved;
+  std::vector<bool> done(queries.size(), false);
+  for (std::size_t first = 0; first < queries.size(); ++first) {
+    jobs.clear();
+    solved.clear();
+    for (std::size_t k = first; k < queries.size(); ++k) {
+      if (done[k] || !(queries[k].options == queries[first].options)) continue;
+      done[k] = true;
+      if (!frames[k]) continue;
+      Frame& frame = *frames[k];
+      frame.vertices.resize(mesh().num_vertices(), 2);
+      jobs.push_back({{frame.weights.data(), static_cast<std::size_t>(frame.weights.size())},
+                      frame.vertices.data()});
+      solved.push_back(&frame);
+    }
+    state_->blend.Solve(jobs, queries[first].options);
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      solved[k]->folds = jobs[k].folds;
+      solved[k]->mended = jobs[k].mended;
+    }
+  }
+  return frames;
 }
 
 Image PoseSpace::Render(const Frame& frame, const View& view) const {
@@ -400,7 +433,7 @@ Image PoseSpace::Render(const Frame& frame, const View& view) const {
   for (int i = 0; i < mesh().num_poses(); ++i) {
     layers.push_back({&mesh().poses[i], &textures[i], frame.texture_weights[i]});
   }
-  return posespace::Render(mesh().triangles, frame.vertices, layers, view);
+  return posespace::Render(mesh().triangles, frame.vertices.cast<double>(), layers, view);
 }
 
 View PoseSpace::DefaultView(int width, int height) const {
@@ -421,9 +454,10 @@ const MappingReport& PoseSpace::report() const { return state_->report; }
 const std::vector<std::string>& PoseSpace::warnings() const { return state_->body->warnings; }
 
 std::int64_t PoseSpace::MemoryBytes() const {
-  // Two blends, each with rotations and stretches for two rest shapes, and the factors of both.
-  constexpr std::int64_t kPerTriangleAndPose = 2 * 2 * 4 * sizeof(double);
-  constexpr std::int64_t kPerVertex = 2 * 2 * 40 * sizeof(double);
+  // Two blends, each with rotations, stretches and a factor in double for two rest shapes, and in
+  // float for one.
+  constexpr std::int64_t kPerTriangleAndPose = 2 * 4 * (2 * sizeof(double) + sizeof(float));
+  constexpr std::int64_t kPerVertex = 2 * (2 * 40 * sizeof(double) + 160 * sizeof(float));
   constexpr std::int64_t kPerTexel = 21;
   std::int64_t bytes =
       std::int64_t{mesh().num_triangles()} * mesh().num_poses() * kPerTriangleAndPose +

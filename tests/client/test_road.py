@@ -170,6 +170,29 @@ def test_frames_name_their_drawings(walk):
     assert frame.revision == walk.state().revision
 
 
+def test_stretch_is_mixed_as_asked(walk):
+    place = (0.3, 0.3)
+    plain = walk.blend(at=place).vertices
+    assert np.array_equal(walk.blend(at=place, stretch="linear").vertices, plain)
+    for stretch in ("log", "metric"):
+        other = walk.blend(at=place, stretch=stretch).vertices
+        assert 0 < np.abs(other - plain).max() < 20
+    with pytest.raises(posespace.InvalidArgument, match="stretch"):
+        walk.blend(at=place, stretch="cubic")
+
+
+def test_repair_mends_what_folds_and_says_so(walk):
+    good = walk.blend(at=(0.3, 0.3))
+    same = walk.blend(at=(0.3, 0.3), repair=True)
+    assert good.folds == same.folds == same.mended == 0
+    assert np.array_equal(good.vertices, same.vertices)
+    far = {"stand": -9.0, "step": 5.0, "wave": 5.0}
+    folded = walk.blend(weights=far)
+    mended = walk.blend(weights=far, repair=True)
+    assert folded.folds > 0 and folded.mended == 0
+    assert mended.folds == 0 and mended.mended == folded.folds
+
+
 def test_blend_many_is_blend_many_times(walk):
     points = np.random.default_rng(5).uniform(-1, 2, (600, 2))  # more than one message holds
     many = walk.blend_many(points)

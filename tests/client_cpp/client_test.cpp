@@ -209,6 +209,19 @@ TEST_F(ClientTest, ReproducesEachDrawingAtItsPlace) {
   }
 }
 
+TEST_F(ClientTest, MixesStretchAndRepairsAsAsked) {
+  const Frame plain = stars().Blend({0.3, 0.4});
+  const std::vector<double> expected(plain.vertices.begin(), plain.vertices.end());
+  for (const auto stretch : {StretchBlend::kLog, StretchBlend::kMetric}) {
+    // The stars differ by turns alone: there is no stretch to mix.
+    const Frame frame = stars().Blend({0.3, 0.4}, {.stretch = stretch});
+    EXPECT_LT(Distance(frame.vertices, expected), 1e-3);
+  }
+  const Frame repaired = stars().Blend({0.3, 0.4}, {.repair = true});
+  EXPECT_EQ(repaired.vertices, plain.vertices);
+  EXPECT_EQ(repaired.mended, 0);
+}
+
 TEST_F(ClientTest, BlendsAtThePointAndAtItsWeightsAlike) {
   const Frame at = stars().Blend({0.3, 0.4});
   const Frame by_weights = stars().Blend(at.weights);

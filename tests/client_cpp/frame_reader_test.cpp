@@ -40,6 +40,7 @@ v1::PlayResponse RandomResult(std::mt19937& random) {
     for (int k = upTo(5); k > 0; --k) frame.add_weights(0.1 * static_cast<double>(random() % 100));
     for (int k = upTo(5); k > 0; --k) frame.add_texture_weights(0.5);
     frame.set_folds(upTo(2) - 1);
+    frame.set_mended(upTo(3));
   }
   return response;
 }
@@ -52,6 +53,7 @@ void ExpectSame(const v1::PlayResponse::FrameResult& result, const FrameItems& i
     EXPECT_EQ(item.slot, expected.slot());
     EXPECT_EQ(item.tag, expected.tag());
     EXPECT_EQ(item.folds, expected.frame().folds());
+    EXPECT_EQ(item.mended, expected.frame().mended());
     EXPECT_EQ(item.reason, expected.reason());
     EXPECT_EQ(item.message, expected.error_message());
     const std::string vertices(

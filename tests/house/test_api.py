@@ -71,6 +71,6 @@ def test_the_linter_finds_a_field_without_a_comment(buf, changed_api):
 
 
 def test_a_renumbered_field_is_found_to_break_clients(buf, changed_api):
-    folder = changed_api("double sigma = 4;", "double sigma = 5;")
+    folder = changed_api("double sigma = 4;", "double sigma = 15;")
     result = buf("breaking", "--against", str(BASELINE), folder=folder)
     assert result.returncode != 0 and "sigma" in result.stdout

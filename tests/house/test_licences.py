@@ -29,6 +29,7 @@ REVIEWED = {
     r"libwebp": "BSD-3-Clause",
     r"libz": "Zlib",
     r"libsqlite3": "public domain",
+    r"libhwy": "Apache-2.0 or BSD-3-Clause",
 }
 
 

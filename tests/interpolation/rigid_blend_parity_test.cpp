@@ -188,12 +188,13 @@ TEST(RigidBlend, AgreesWithADenseLeastSquaresSolve) {
     weights[k % 5] -= 0.5;
     for (const int refits : {0, 1, 2, 3}) {
       for (const auto limit : {ShearLimit::kBand, ShearLimit::kHermite}) {
-        EXPECT_LT(Apart(blend->At(weights, {BlendMethod::kRigid, limit, refits}),
+        EXPECT_LT(Apart(blend->At(weights, {.shear_limit = limit, .refits = refits}),
                         DenseBlend(mesh, weights, {true, limit, refits})),
                   1e-8);
       }
     }
-    EXPECT_LT(Apart(blend->At(weights, {BlendMethod::kPaper, ShearLimit::kHermite, 3}),
+    EXPECT_LT(Apart(blend->At(weights,
+                              {.method = BlendMethod::kPaper, .shear_limit = ShearLimit::kHermite}),
                     DenseBlend(mesh, weights, {false, ShearLimit::kHermite, 0})),
               1e-8);
   }

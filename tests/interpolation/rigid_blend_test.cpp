@@ -55,7 +55,8 @@ TEST(RigidBlend, ReproducesEachPose) {
     for (const auto limit : {ShearLimit::kBand, ShearLimit::kHermite, ShearLimit::kOff}) {
       for (const int refits : {0, 1, 3}) {
         for (int i = 0; i < 4; ++i) {
-          const Points vertices = blend.At(Unit(4, i), {method, limit, refits});
+          const Points vertices =
+              blend.At(Unit(4, i), {method, limit, refits, StretchBlend::kLinear});
           EXPECT_LT(Apart(vertices, mesh.poses[i]), 1e-9);
         }
       }
@@ -227,6 +228,44 @@ TEST(RigidBlend, LimitsShearWhereRawWeightsFold) {
   const Eigen::Vector2d weights(-1.5, 2.5);
   EXPECT_GT(CountFolds(mesh.triangles, blend.At(weights, {.shear_limit = ShearLimit::kOff})), 0);
   EXPECT_EQ(CountFolds(mesh.triangles, blend.At(weights)), 0);
+}
+
+TEST(RigidBlend, MixesStretchAsAsked) {
+  // A square as large as itself and seven times as large.
+  const CompatibleMesh mesh =
+      StripMesh(2, 2, 1.0, {Moved(0.0, {0, 0}), [](const Point& p) -> Point { return 7.0 * p; }});
+  const RigidBlend blend = Prepared(mesh);
+  const auto side = [&](double w, StretchBlend stretch) {
+    const Points vertices = blend.At(Eigen::Vector2d(1.0 - w, w), {.stretch = stretch});
+    return (vertices.row(0) - vertices.row(2)).norm() / 2.0;
+  };
+  EXPECT_NEAR(side(0.5, StretchBlend::kLinear), 4.0, 1e-12);
+  EXPECT_NEAR(side(0.5, StretchBlend::kLog), std::sqrt(7.0), 1e-12);
+  EXPECT_NEAR(side(0.5, StretchBlend::kMetric), 5.0, 1e-12);
+}
+
+TEST(RigidBlend, ReproducesEachPoseHoweverStretchIsMixed) {
+  const CompatibleMesh mesh = Limbs(12);
+  const RigidBlend blend = Prepared(mesh);
+  for (const auto stretch : {StretchBlend::kLog, StretchBlend::kMetric}) {
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_LT(Apart(blend.At(Unit(4, i), {.stretch = stretch}), mesh.poses[i]), 1e-9);
+    }
+  }
+}
+
+TEST(RigidBlend, NeverInvertsByLogarithmsWhateverTheWeights) {
+  const CompatibleMesh mesh =
+      StripMesh(4, 4, 1.0, {Moved(0.0, {0, 0}), [](const Point& p) -> Point {
+                              return {0.5 * p.x(), p.y()};
+                            }});
+  const RigidBlend blend = Prepared(mesh);
+  for (const double w : {-3.0, 2.5, 6.0}) {
+    const Points vertices = blend.At(Eigen::Vector2d(1.0 - w, w), {.shear_limit = ShearLimit::kOff,
+                                                                   .stretch = StretchBlend::kLog});
+    EXPECT_EQ(CountFolds(mesh.triangles, vertices), 0);
+    EXPECT_NEAR((vertices.row(20) - vertices.row(0)).norm(), 4.0 * std::pow(0.5, w), 1e-9);
+  }
 }
 
 TEST(RigidBlend, TurnsTheWayRoundThatTurnsSay) {

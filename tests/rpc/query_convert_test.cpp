@@ -62,6 +62,20 @@ TEST(Query, UsesTheShearLimitOfItsMethodUnlessTold) {
   EXPECT_EQ(QueryFromProto(query)->options.method, BlendMethod::kLinear);
 }
 
+TEST(Query, SaysHowStretchIsMixedAndWhetherToRepair) {
+  v1::Query query = At(0, 0);
+  EXPECT_EQ(QueryFromProto(query)->options.stretch, StretchBlend::kLinear);
+  EXPECT_FALSE(QueryFromProto(query)->options.repair);
+  for (const auto& [value, stretch] : {std::pair(v1::STRETCH_BLEND_LINEAR, StretchBlend::kLinear),
+                                       {v1::STRETCH_BLEND_LOG, StretchBlend::kLog},
+                                       {v1::STRETCH_BLEND_METRIC, StretchBlend::kMetric}}) {
+    query.mutable_options()->set_stretch(value);
+    EXPECT_EQ(QueryFromProto(query)->options.stretch, stretch);
+  }
+  query.mutable_options()->set_repair(true);
+  EXPECT_TRUE(QueryFromProto(query)->options.repair);
+}
+
 TEST(Query, IsRefusedForEnumsItDoesNotKnow) {
   v1::Query query = At(0, 0);
   query.mutable_options()->set_method(static_cast<v1::BlendMethod>(9));
@@ -69,6 +83,9 @@ TEST(Query, IsRefusedForEnumsItDoesNotKnow) {
   query.mutable_options()->clear_method();
   query.mutable_options()->set_shear_limit(static_cast<v1::ShearLimit>(-1));
   EXPECT_THAT(QueryFromProto(query), FailsSaying(ErrorCode::kInvalidOption, "options.shear_limit"));
+  query.mutable_options()->clear_shear_limit();
+  query.mutable_options()->set_stretch(static_cast<v1::StretchBlend>(4));
+  EXPECT_THAT(QueryFromProto(query), FailsSaying(ErrorCode::kInvalidOption, "options.stretch"));
 }
 
 TEST(Query, TakesRefitsAndSigmaToTheEndsOfTheirRangesAndNoFarther) {
@@ -118,6 +135,25 @@ TEST(BlendQuery, NamesTheQueryInEveryError) {
               ElementsAre(Field(&Violation::field, "queries[3].at")));
 }
 
+TEST(BlendQueries, KeepsEachAnswerAtItsPlaceAmongErrors) {
+  const auto pose_space = TwoEllipses();
+  std::vector<v1::Query> queries{At(0, 0.2), At(kNan, 0), At(0, 0.7), {}, At(0, 1)};
+  queries[2].mutable_options()->set_refits(1);  // is solved apart from the others
+  std::vector<NamedQuery> named;
+  for (const v1::Query& query : queries)
+    named.push_back({&query, QueryField(static_cast<int>(named.size()))});
+  const auto frames = BlendQueries(*pose_space, named, /*weights_only=*/false);
+  ASSERT_EQ(frames.size(), 5u);
+  EXPECT_THAT(frames[1], FailsSaying(ErrorCode::kPoseNotFinite, "queries[1]"));
+  EXPECT_THAT(frames[3], FailsSaying(ErrorCode::kInvalidOption, "queries[3]"));
+  for (const int k : {0, 2, 4}) {
+    ASSERT_TRUE(frames[k]);
+    const auto alone = BlendQuery(*pose_space, queries[k], "query", /*weights_only=*/false);
+    EXPECT_EQ(frames[k]->vertices, alone->vertices);
+    EXPECT_EQ(frames[k]->weights, alone->weights);
+  }
+}
+
 TEST(BlendQuery, GivesWeightsAloneWhenAsked) {
   const auto frame = BlendQuery(*TwoEllipses(), At(0, 1), "queries[0]", /*weights_only=*/true);
   ASSERT_TRUE(frame);
@@ -127,15 +163,17 @@ TEST(BlendQuery, GivesWeightsAloneWhenAsked) {
 
 TEST(Frame, TravelsAsLittleEndianFloats) {
   Frame frame;
-  frame.vertices = (Points(2, 2) << 1.5, -2.0, 1e30, 0.0).finished();
+  frame.vertices = (FloatPoints(2, 2) << 1.5f, -2.0f, 1e30f, 0.0f).finished();
   frame.weights = Eigen::Vector2d(0.25, 0.75);
   frame.texture_weights = Eigen::Vector2d(0.5, 0.5);
   frame.folds = 3;
+  frame.mended = 2;
   v1::Frame out;
   ToProto(frame, /*with_weights=*/false, &out);
   ASSERT_EQ(out.vertices().size(), 16u);
   EXPECT_EQ(out.vertices().substr(0, 8), std::string("\0\0\xc0\x3f\0\0\0\xc0", 8));
   EXPECT_EQ(out.folds(), 3);
+  EXPECT_EQ(out.mended(), 2);
   EXPECT_EQ(out.weights_size(), 0);
   ToProto(frame, /*with_weights=*/true, &out);
   EXPECT_THAT(out.weights(), ElementsAre(0.25, 0.75));

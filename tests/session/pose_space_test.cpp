@@ -43,7 +43,12 @@ Query With(std::initializer_list<double> weights) {
   return query;
 }
 
-double Distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
+double Distance(const FloatPoints& a, const Points& b) {
+  return (a.cast<double>() - b).rowwise().norm().maxCoeff();
+}
+
+// Drawing pixels that blends of these small drawings may err by.
+constexpr double kBlendError = 5e-4;
 
 TEST(PoseSpace, ReproducesEachDrawingAtItsPlace) {
   const PoseSpace& space = Creatures();
@@ -51,7 +56,7 @@ TEST(PoseSpace, ReproducesEachDrawingAtItsPlace) {
     const Point place = space.placements().row(i);
     const auto frame = space.Blend(At(place.x(), place.y()));
     ASSERT_THAT(frame, Succeeds());
-    EXPECT_LT(Distance(frame->vertices, space.mesh().poses[i]), 1e-6);
+    EXPECT_LT(Distance(frame->vertices, space.mesh().poses[i]), kBlendError);
     EXPECT_NEAR(frame->weights[i], 1.0, 1e-9);
     EXPECT_NEAR(frame->texture_weights[i], 1.0, 1e-9);
     EXPECT_EQ(frame->folds, 0);
@@ -71,8 +76,29 @@ TEST(PoseSpace, IsOneDrawingEverywhereWhenThereIsOne) {
   for (const Query& query : {At(0, 0), At(5, -7), At(1e300, 0), With({1.0})}) {
     const auto frame = space->Blend(query);
     ASSERT_THAT(frame, Succeeds());
-    EXPECT_LT(Distance(frame->vertices, space->mesh().poses[0]), 1e-6);
+    EXPECT_LT(Distance(frame->vertices, space->mesh().poses[0]), kBlendError);
   }
+}
+
+TEST(PoseSpace, BlendsManyAsItBlendsOne) {
+  std::vector<Query> queries;
+  for (int k = 0; k < 40; ++k) {
+    queries.push_back(At(0.05 * k - 0.5, 0.03 * k));
+    if (k % 3 == 1) queries.back().options.refits = 0;
+    if (k % 7 == 2) queries.back().options.method = BlendMethod::kLinear;
+    if (k % 10 == 4) queries.back() = At(std::nan(""), 0);
+  }
+  const auto frames = Creatures().BlendAll(queries);
+  ASSERT_EQ(frames.size(), queries.size());
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    const auto alone = Creatures().Blend(queries[k]);
+    ASSERT_EQ(static_cast<bool>(frames[k]), static_cast<bool>(alone)) << k;
+    if (!alone) continue;
+    EXPECT_EQ(frames[k]->vertices, alone->vertices) << k;
+    EXPECT_EQ(frames[k]->weights, alone->weights) << k;
+    EXPECT_EQ(frames[k]->folds, alone->folds) << k;
+  }
+  EXPECT_TRUE(Creatures().BlendAll({}).empty());
 }
 
 TEST(PoseSpace, GivesWeightsThatSumToOneEverywhere) {
@@ -267,7 +293,7 @@ TEST(PoseSpace, ShowsABentBarHalfwayStraightInItsDefaultView) {
   ASSERT_THAT(halfway, Succeeds());
   const double width = halfway->vertices.col(0).maxCoeff() - halfway->vertices.col(0).minCoeff();
   EXPECT_GT(width, 240.0);
-  EXPECT_TRUE(IsShown(space->DefaultView(200, 100), halfway->vertices));
+  EXPECT_TRUE(IsShown(space->DefaultView(200, 100), halfway->vertices.cast<double>()));
 }
 
 TEST(PoseSpace, ReportsItsStagesInOrder) {
@@ -372,7 +398,7 @@ TEST(PoseSpace, ChecksItsInputsBeforeAnyWork) {
 }
 
 TEST(PoseSpace, IsBlendedByManyThreadsAlike) {
-  const Points expected = Creatures().Blend(At(0.3, -0.2))->vertices;
+  const FloatPoints expected = Creatures().Blend(At(0.3, -0.2))->vertices;
   std::vector<std::thread> threads;
   std::atomic<int> wrong = 0;
   for (int i = 0; i < 4; ++i) {

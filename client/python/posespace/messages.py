@@ -22,6 +22,7 @@ M = TypeVar("M", bound=Message)
 
 BlendMethod = Literal["rigid", "linear", "paper"]
 ShearLimit = Literal["band", "hermite", "off"]
+StretchBlend = Literal["linear", "log", "metric"]
 Foreground = Literal["alpha", "light", "dark"]
 Place = Sequence[float] | NDArray[np.floating[Any]]  # x and y
 
@@ -35,6 +36,11 @@ _SHEAR_LIMITS = {
     "band": pose_service_pb2.SHEAR_LIMIT_BAND,
     "hermite": pose_service_pb2.SHEAR_LIMIT_HERMITE,
     "off": pose_service_pb2.SHEAR_LIMIT_OFF,
+}
+_STRETCHES = {
+    "linear": pose_service_pb2.STRETCH_BLEND_LINEAR,
+    "log": pose_service_pb2.STRETCH_BLEND_LOG,
+    "metric": pose_service_pb2.STRETCH_BLEND_METRIC,
 }
 _FOREGROUNDS = {
     "alpha": session_service_pb2.FOREGROUND_ALPHA,
@@ -123,7 +129,12 @@ def picture_size(size: Sequence[int]) -> tuple[int, int]:
 
 
 def blend_options(
-    method: BlendMethod, shear_limit: ShearLimit | None, refits: int | None, sigma: float
+    method: BlendMethod,
+    shear_limit: ShearLimit | None,
+    refits: int | None,
+    sigma: float,
+    stretch: StretchBlend = "linear",
+    repair: bool = False,
 ) -> pose_service_pb2.BlendOptions:
     """How to blend."""
     return make(
@@ -132,6 +143,8 @@ def blend_options(
         shear_limit=choice("shear_limit", shear_limit, _SHEAR_LIMITS),
         refits=refits,
         sigma=sigma,
+        stretch=choice("stretch", stretch, _STRETCHES),
+        repair=repair,
     )
 
 
@@ -310,6 +323,7 @@ def frame(
         weights=dict(zip(shape_ids, message.weights, strict=False)),
         texture_weights=dict(zip(shape_ids, message.texture_weights, strict=False)),
         folds=message.folds,
+        mended=message.mended,
         revision=revision,
     )
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from posespace import messages
 from posespace.channel import Channel
 from posespace.errors import Conflict, Error, NotBuilt, NotFound, Unavailable, error_of_reason
-from posespace.messages import BlendMethod, Place, ShearLimit
+from posespace.messages import BlendMethod, Place, ShearLimit, StretchBlend
 from posespace.play_stream import PlayStream
 from posespace.results import Frame
 from posespace.v1 import pose_service_pb2
@@ -47,10 +47,12 @@ class Avatar:
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
     ) -> Item:
         """avatar.item(at=(0, 0.5)): a query as in Session.blend, to be answered by Player.tick."""
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         query = messages.query(at, weights, self.shape_ids, options)
         message = pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query)
         return Item(self, message, None if weights is None else self.shape_ids)
@@ -177,6 +179,8 @@ class Player:
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
         with_weights: bool = True,
     ) -> Iterator[Frame]:
@@ -192,7 +196,7 @@ class Player:
         other takes its place.
         """
         avatar = avatar or self.avatar
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         under_way: deque[int] = deque()
 
         def oldest() -> Frame:

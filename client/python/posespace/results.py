@@ -190,6 +190,7 @@ class Frame:
     weights          Drawing -> weight; they sum to 1 and may lie outside [0, 1].
     texture_weights  Drawing -> weight of its pixels, in [0, 1]; they sum to 1.
     folds            Triangles that are not positive; 0 in a good frame.
+    mended           Triangles that repair made positive; 0 when nothing had to be mended.
     revision         The pose space it is of.
     """
 
@@ -197,6 +198,7 @@ class Frame:
     weights: Mapping[str, float]
     texture_weights: Mapping[str, float]
     folds: int
+    mended: int
     revision: str
 
 

@@ -16,7 +16,7 @@ from posespace.animation import Easing, Waypoints, animation
 from posespace.authoring import Authoring
 from posespace.channel import Channel
 from posespace.errors import Error, NotFound
-from posespace.messages import BlendMethod, Place, ShearLimit
+from posespace.messages import BlendMethod, Place, ShearLimit, StretchBlend
 from posespace.pictures import decode_png
 from posespace.player import Player
 from posespace.results import AnimationFrame, Frame, Mesh
@@ -80,6 +80,8 @@ class Session(Authoring):
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
     ) -> Frame:
         """The drawing at a point of pose space, or at explicit weights.
@@ -95,11 +97,15 @@ class Session(Authoring):
         shear_limit  How weights outside [0, 1] act on stretch and texture: "band", "hermite",
                      "off"; by default "band", and "hermite" with "paper".
         sigma        Sharpness of texture transitions, 0 (linear) to 1 (a step).
+        stretch      How lengths are mixed by "rigid": "linear"; "log", so that they multiply and
+                     never invert; "metric", their squares.  The last two take longer.
+        repair       Unfold the frame where triangles fold over (`.mended` says how many); takes
+                     milliseconds where there is something to mend.
 
         Raises NotBuilt, InvalidArgument (POSE_NOT_FINITE, WEIGHTS_SUM_NOT_ONE, ...), NotFound for
         weights of an unknown drawing.
         """
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
 
         def ask(revision: str, shape_ids: list[str]) -> Frame:
             request = pose_service_pb2.BlendRequest(
@@ -119,6 +125,8 @@ class Session(Authoring):
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
     ) -> NDArray[np.float32]:
         """The vertices at many points of pose space: (K, 2) -> (K, V, 2) float32.
 
@@ -128,7 +136,7 @@ class Session(Authoring):
         errors as in `blend`; one bad point refuses the whole call, and `fields` names it.
         """
         places = messages.points_array(points, "points")
-        options = messages.blend_options(method, shear_limit, refits, 0.0)
+        options = messages.blend_options(method, shear_limit, refits, 0.0, stretch, repair)
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.float32]:
             if len(places) == 0:
@@ -164,6 +172,8 @@ class Session(Authoring):
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
     ) -> NDArray[np.uint8]:
         """A picture of the drawing there: (H, W, 4) uint8, rows from the top, straight alpha, sRGB.
@@ -177,7 +187,7 @@ class Session(Authoring):
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
         request = self._render_request(size, view)
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         channel = self._channel
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.uint8]:
@@ -203,6 +213,8 @@ class Session(Authoring):
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
     ) -> Generator[AnimationFrame, None, None]:
         """Drawings along a smooth path through points of pose space, one by one.
@@ -228,7 +240,7 @@ class Session(Authoring):
         Raises, with the first frame, NotBuilt and InvalidArgument (PATH_INVALID, TOO_MANY_FRAMES,
         ...); other options and errors as in `blend`.
         """
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         request = messages.make(
             pose_service_pb2.AnimateRequest,
             session_id=self._id,
@@ -250,6 +262,8 @@ class Session(Authoring):
         method: BlendMethod = "rigid",
         refits: int | None = None,
         shear_limit: ShearLimit | None = None,
+        stretch: StretchBlend = "linear",
+        repair: bool = False,
         sigma: float = 0.0,
     ) -> Generator[NDArray[np.uint8], None, None]:
         """Pictures along a smooth path, one by one: (H, W, 4) uint8 each.
@@ -260,7 +274,7 @@ class Session(Authoring):
         At most 10,000 frames.  Path and streaming as in `animate`, pictures as in `render`.
         """
         request = self._render_request(size, view)
-        options = messages.blend_options(method, shear_limit, refits, sigma)
+        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         request.animation.CopyFrom(animation(path, fps, easing, loop, duration, options))
         return self._animation_pictures(request)
 

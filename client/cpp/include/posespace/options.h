@@ -104,11 +104,20 @@ enum class ShearLimit {
   kOff,       // not limited; extrapolation may fold
 };
 
+// How stretches of triangles are mixed by BlendMethod::kRigid.
+enum class StretchBlend {
+  kLinear,  // lengths in the mean
+  kLog,     // lengths multiply, and never invert; takes longer
+  kMetric,  // squared lengths in the mean; takes longer
+};
+
 struct BlendOptions {
   BlendMethod method = BlendMethod::kRigid;
   ShearLimit shear_limit = ShearLimit::kByMethod;
   std::optional<int> refits = {};  // rotation refits of kRigid, 0 to 3; 3 by default
   double sigma = 0.0;              // sharpness of texture transitions, 0 (linear) to 1 (a step)
+  StretchBlend stretch = StretchBlend::kLinear;
+  bool repair = false;  // unfold what folds over: milliseconds where there is something to mend
   friend bool operator==(const BlendOptions&, const BlendOptions&) = default;
 };
 

@@ -36,6 +36,7 @@ struct Answer {
   std::span<const double> weights;  // in the order of session->shape_ids; if asked for
   std::span<const double> texture_weights;
   int folds = 0;                          // triangles that are not positive; 0 in a good frame
+  int mended = 0;                         // triangles that repair made positive
   const BoundSession* session = nullptr;  // what it is of; null when the slot has none
   const Error* error = nullptr;           // why there is no frame
 };

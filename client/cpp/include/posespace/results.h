@@ -104,6 +104,7 @@ struct Frame {
   std::map<std::string, double> weights;          // by drawing; they sum to 1
   std::map<std::string, double> texture_weights;  // by drawing; in [0, 1], they sum to 1
   int folds = 0;                                  // triangles that are not positive
+  int mended = 0;                                 // triangles that repair made positive
   std::string revision;
 };
 
