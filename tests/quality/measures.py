@@ -7,11 +7,81 @@ from dataclasses import dataclass
 
 import numpy as np
 import posespace
+from exact_mesh_checks import assert_valid_in_every_drawing
 from numpy.typing import NDArray
+from outlines import edge_lengths, farthest, protrusion, signed_area, turns, turns_of
 
 BLENDS = 10  # random in-betweens of a group
+TOLERANCE = 0.03  # the build's default, of the square root of a drawing's area
+_ARCS = 1024  # places around an outline that are asked for, as many as there may be
 
 Points = NDArray[np.float64]
+
+
+def is_valid(mesh: posespace.Mesh) -> bool:
+    """As assert_valid_in_every_drawing says, exactly."""
+    try:
+        assert_valid_in_every_drawing(mesh)
+    except AssertionError:
+        return False
+    return True
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """How mesh outlines lie about the drawings' outlines, in square roots of a drawing's area; of
+    the worst drawing."""
+
+    protrusion: float  # how far the drawing's outline is outside the mesh's
+    distance: float  # Hausdorff
+
+    @property
+    def holds(self) -> bool:
+        """Enclosing, and within the tolerance; up to the rounding of coordinates."""
+        return self.protrusion <= 1e-9 and self.distance <= TOLERANCE + 1e-9
+
+
+def enclosure(mesh: posespace.Mesh) -> Enclosure:
+    worst = Enclosure(0.0, 0.0)
+    for name, points in mesh.vertices.items():
+        outline, rim = mesh.outlines[name][0], points[mesh.boundary[0]]
+        size = abs(signed_area(outline)) ** 0.5
+        worst = Enclosure(
+            max(worst.protrusion, protrusion(outline, rim) / size),
+            max(worst.distance, farthest(outline, rim) / size),
+        )
+    return worst
+
+
+def matching_errors(session: posespace.Session, places: dict[str, Points]) -> Points:
+    """(N, N): how far along drawing j the automatic matching puts row k of drawing i from row k of
+    drawing j, in turns; the mean over the length of drawing i.
+
+    places  Drawing -> ring (K, 2), its own outline; row k of every ring is the same place.
+    """
+    arcs = session.suggest(samples=_ARCS).arcs
+    found = {name: turns_of(arcs[name], ring) for name, ring in places.items()}
+    known = {name: turns(ring) for name, ring in places.items()}
+    errors = np.zeros((len(places), len(places)))
+    for i, (a, ring) in enumerate(places.items()):
+        before, after = edge_lengths(np.roll(ring, 1, axis=0)), edge_lengths(ring)
+        for j, b in enumerate(places):
+            apart = _along(known[a], found[a], found[b]) - known[b]
+            apart = np.abs(apart - np.round(apart))
+            errors[i, j] = np.average(apart, weights=before + after)
+    return errors
+
+
+def _along(at: Points, start: Points, end: Points) -> Points:
+    """Where a map of closed curves takes turns `at`: it takes start[m] to end[m], in order, and is
+    linear in between."""
+    order = np.argsort(start)
+    start, end = start[order], end[order]
+    rise = np.diff(end, prepend=end[-1:])
+    end = end[0] + np.cumsum(np.concatenate([[0.0], rise[1:] - np.floor(rise[1:])]))
+    start = np.concatenate([start[-1:] - 1, start, start[:1] + 1])
+    end = np.concatenate([end[-1:] - 1, end, end[:1] + 1])
+    return np.interp(at, start, end)
 
 
 def angles(mesh: posespace.Mesh) -> Points:

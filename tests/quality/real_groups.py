@@ -35,6 +35,8 @@ class Group:
     foreground: str
     threshold: int | None
     expect: str | None
+    kind: str
+    rings: dict[str, Path]  # files of outlines whose row k is the same place in all; or none
 
     def upload(self, session: posespace.Session) -> None:
         for shape_id, path in self.members.items():
@@ -42,6 +44,14 @@ class Group:
             session.put_shape(
                 shape_id, **source, foreground=self.foreground, threshold=self.threshold
             )
+
+    @property
+    def places(self) -> dict[str, NDArray[np.float64]] | None:
+        """Drawing -> ring (K, 2), where row k of every ring is known to be the same place."""
+        return {
+            name: np.array(json.loads(path.read_text())["outer"], dtype=float)
+            for name, path in self.rings.items()
+        } or None
 
 
 def all_groups() -> list[Group]:
@@ -56,6 +66,13 @@ def all_groups() -> list[Group]:
             foreground=entry["foreground"],
             threshold=entry.get("alpha_threshold"),
             expect=entry.get("expect"),
+            kind=entry["kind"],
+            rings={
+                Path(member).stem: SHAPES / ring
+                for member, ring in zip(entry["members"], entry["polygons"], strict=True)
+            }
+            if "correspondence" in entry
+            else {},
         )
         for entry in json.loads(index.read_text())["groups"]
     ]

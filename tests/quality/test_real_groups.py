@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every group of real drawings, from upload to picture.  Leaves build/quality/real_groups.md."""
+"""Every group of real drawings, from upload to picture, measured on the way."""
 
 from __future__ import annotations
 
@@ -8,24 +8,16 @@ from collections.abc import Iterator
 import numpy as np
 import posespace
 import pytest
-import survey
 from exact_mesh_checks import assert_valid_in_every_drawing
 from measures import random_weights
 from numpy.typing import NDArray
+from outlines import inside
 from PIL import Image, ImageFilter
-from real_groups import ABSENT, ROOT, Group, all_groups, canvas_of, painted, picture_of
+from quality_bounds import row_regressions
+from quality_table import Row, measure
+from real_groups import ABSENT, Group, all_groups, canvas_of, painted, picture_of
 
 GROUPS = all_groups()
-
-
-@pytest.fixture(scope="module")
-def rows() -> Iterator[list[survey.Row]]:
-    """Filled by the tests, written at their end."""
-    collected: list[survey.Row] = []
-    yield collected
-    folder = ROOT / "build/quality"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "real_groups.md").write_text(survey.table(collected))
 
 
 @pytest.fixture(scope="module", params=GROUPS, ids=[group.name for group in GROUPS])
@@ -34,23 +26,18 @@ def group(request) -> Group:
 
 
 @pytest.fixture(scope="module")
-def built(group, client, rows) -> Iterator[posespace.Session]:
+def built(group, client) -> Iterator[posespace.Session]:
     session = client.create_session(display_name=group.name)
-    seconds = survey.build(session, group)
-    rows.append(survey.measure(session, group.name, seconds))
+    group.upload(session)
+    session.build()
     yield session
     session.delete()
 
 
-def inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points lie inside the ring, by counting crossings to their right."""
-    odd = np.zeros(len(points), dtype=bool)
-    x, y = points.T
-    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        spans = (ay > y) != (by > y)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            odd ^= spans & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    return odd
+@pytest.fixture(scope="module")
+def row(built, group, measured) -> Row:
+    measured.rows.append(measure(built, group))
+    return measured.rows[-1]
 
 
 def grown(mask: NDArray[np.bool_], pixels: int) -> NDArray[np.bool_]:
@@ -71,8 +58,17 @@ def test_the_drawings_are_present():
     pytest.skip(ABSENT)
 
 
-def test_the_mesh_is_valid_in_every_drawing(built):
-    assert_valid_in_every_drawing(built.mesh())
+def test_the_mesh_is_valid_in_every_drawing(built, row):
+    if not row.values["valid"]:
+        assert_valid_in_every_drawing(built.mesh())  # says where
+
+
+def test_the_mesh_encloses_every_outline_within_tolerance(row):
+    assert row.values["encloses"]
+
+
+def test_a_real_group_is_no_worse_than_its_bounds(row, bounds):
+    assert row_regressions(row, bounds) == []
 
 
 def test_the_mesh_covers_every_painted_pixel(built, group):
