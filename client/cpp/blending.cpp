@@ -58,6 +58,7 @@ v1::RenderRequest RenderRequestOf(const std::string& session_id, const RenderOpt
   request.set_width(options.width);
   request.set_height(options.height);
   request.set_format(v1::IMAGE_FORMAT_RGBA);
+  request.set_edges(options.edges == Edges::kSoft ? v1::EDGES_SOFT : v1::EDGES_CRISP);
   if (options.view) {
     request.mutable_view()->set_x(options.view->x);
     request.mutable_view()->set_y(options.view->y);

@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "drawing/colour_space.h"
+#include "drawing/edge_distance.h"
 
 namespace posespace {
 
-RenderTexture::RenderTexture(const Texture& texture) : origin_(texture.origin) {
+RenderTexture::RenderTexture(const Texture& texture)
+    : origin_(texture.origin), edge_distance_(EdgeDistance(texture.image)) {
   const Image& image = texture.image;
   Level finest{image.width, image.height, texture.scale, {}};
   finest.texels.resize(image.rgba.size());
@@ -68,6 +70,23 @@ int RenderTexture::LevelFor(double length) const {
   if (!(texels > 1.0)) return 0;
   const double level = std::round(std::log2(texels));
   return static_cast<int>(std::min<double>(level, static_cast<double>(levels_.size()) - 1));
+}
+
+float RenderTexture::EdgeDistanceAt(const Point& place) const {
+  const Level& finest = levels_[0];
+  if (edge_distance_.empty()) return std::numeric_limits<float>::lowest();
+  const Point at = (place - origin_) * finest.scale - Point(0.5, 0.5);
+  const Point nearest = at.cwiseMax(0.0).cwiseMin(Point(finest.width - 1.0, finest.height - 1.0));
+  const int x = std::min(static_cast<int>(nearest.x()), std::max(0, finest.width - 2));
+  const int y = std::min(static_cast<int>(nearest.y()), std::max(0, finest.height - 2));
+  const int right = finest.width > 1 ? 1 : 0, below = finest.height > 1 ? finest.width : 0;
+  const float s = static_cast<float>(nearest.x() - x), t = static_cast<float>(nearest.y() - y);
+  const std::int16_t* cell =
+      edge_distance_.data() + static_cast<std::ptrdiff_t>(y) * finest.width + x;
+  const float units = (1.0f - t) * ((1.0f - s) * cell[0] + s * cell[right]) +
+                      t * ((1.0f - s) * cell[below] + s * cell[below + right]);
+  const float beyond = static_cast<float>((at - nearest).norm());
+  return (units / kEdgeDistanceUnits - beyond) / static_cast<float>(finest.scale);
 }
 
 namespace {
@@ -133,6 +152,7 @@ struct ActiveLayer {
   const RenderTexture* texture;
   float weight;
   int level;
+  float texel;  // side of the level's texels, drawing pixels
 };
 
 double TotalArea(const Triangles& triangles, const Points& vertices) {
@@ -157,11 +177,61 @@ std::vector<ActiveLayer> ActiveLayers(const Triangles& triangles, const Points& 
   for (const RenderLayer& layer : layers) {
     if (!(layer.weight >= kSmallestWeight)) continue;
     const double pixel = std::sqrt(TotalArea(triangles, *layer.pose) / drawn_area);
+    const int level = layer.texture->LevelFor(pixel);
     result.push_back({layer.pose, layer.texture, static_cast<float>(layer.weight * total / active),
-                      layer.texture->LevelFor(pixel)});
+                      level, layer.texture->TexelSize(level)});
   }
   return result;
 }
+
+// What the layers come to at one pixel.
+struct MixedPixel {
+  Eigen::Array4f colour = Eigen::Array4f::Zero();  // premultiplied linear
+  float covered = 0.0f;  // mean of the layers' coverages, 1 inside and 0 outside their edges
+  float inside = 0.0f;   // mean distance inside the edge, drawing pixels
+};
+
+// How much of a texel is painted that lies so many texels inside an edge.
+float Coverage(float texels) { return std::clamp(texels + 0.5f, 0.0f, 1.0f); }
+
+// How far inside an edge a place lies, texels, of what alpha and the measured distance say.  Within
+// a texel of the edge alpha is exact until it saturates; measured distances are rough by half a
+// texel, but say how much more there is.
+float TexelsInside(float alpha, float distance) {
+  constexpr float kSaturated = 0.9f;
+  const float by_alpha = 2.0f * alpha - 1.0f;
+  const float saturation = (std::abs(by_alpha) - kSaturated) / (1.0f - kSaturated);
+  const float more = std::max(std::abs(distance) - 0.5f, 0.0f);
+  const float near =
+      0.5f * by_alpha + std::copysign(std::clamp(saturation, 0.0f, 1.0f) * more, by_alpha);
+  return std::lerp(near, distance, std::clamp(std::abs(distance) - 1.0f, 0.0f, 1.0f));
+}
+
+// All that is drawn with.
+struct Brush {
+  std::vector<ActiveLayer> layers;
+  bool crisp;   // two layers or more may disagree about what is painted
+  float texel;  // mean over the layers
+
+  // Adds a layer's texel at a place to a pixel.
+  void Add(const ActiveLayer& layer, const Point& place, MixedPixel* pixel) const {
+    const Eigen::Array4f colour = layer.texture->At(place, layer.level);
+    pixel->colour += layer.weight * colour;
+    if (!crisp) return;
+    const float distance = layer.texture->EdgeDistanceAt(place);
+    const float texels = TexelsInside(colour[3], distance / layer.texel);
+    pixel->covered += layer.weight * Coverage(texels);
+    pixel->inside += layer.weight * layer.texel * texels;
+  }
+
+  // Makes the pixel as opaque as the layers that are painted there, if it is to be painted.  Where
+  // the layers agree it stays as it is, and so do shades fainter than an edge.
+  void Sharpen(MixedPixel* pixel) const {
+    if (crisp && pixel->covered > 0.0f) {
+      pixel->colour *= Coverage(pixel->inside / texel) / pixel->covered;
+    }
+  }
+};
 
 // Premultiplied linear picture under construction.
 class Canvas {
@@ -171,17 +241,17 @@ class Canvas {
         texels_(static_cast<std::size_t>(view.width) * view.height, Eigen::Array4f::Zero()),
         mixing_(view.width) {}
 
-  // A transparent run of pixels to mix layers in; valid until the next call.
-  std::span<Eigen::Array4f> Mixing(std::int64_t pixels) {
-    std::fill_n(mixing_.begin(), pixels, Eigen::Array4f::Zero());
+  // An empty run of pixels to mix layers in; valid until the next call.
+  std::span<MixedPixel> Mixing(std::int64_t pixels) {
+    std::fill_n(mixing_.begin(), pixels, MixedPixel{});
     return {mixing_.data(), static_cast<std::size_t>(pixels)};
   }
 
   // Lays a run of pixels over those that begin at (x, y).
-  void Over(std::int64_t x, int y, std::span<const Eigen::Array4f> colours) {
+  void Over(std::int64_t x, int y, std::span<const MixedPixel> run) {
     Eigen::Array4f* below = texels_.data() + static_cast<std::size_t>(y) * width_ + x;
-    for (const Eigen::Array4f& colour : colours) {
-      *below = colour + (1.0f - std::min(colour[3], 1.0f)) * *below;
+    for (const MixedPixel& pixel : run) {
+      *below = pixel.colour + (1.0f - std::min(pixel.colour[3], 1.0f)) * *below;
       ++below;
     }
   }
@@ -204,12 +274,12 @@ class Canvas {
  private:
   int width_;
   std::vector<Eigen::Array4f> texels_;
-  std::vector<Eigen::Array4f> mixing_;
+  std::vector<MixedPixel> mixing_;
 };
 
 // Draws one triangle: from each layer, the texel at the pixel's barycentric place.
 void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& fixed,
-                  std::span<const ActiveLayer> layers, const View& view, Canvas* canvas) {
+                  const Brush& brush, const View& view, Canvas* canvas) {
   std::array<int, 3> v = corners;
   const auto twice_area = [&] {
     const Fixed &a = fixed[v[0]], &b = fixed[v[1]], &c = fixed[v[2]];
@@ -245,14 +315,14 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
       values[k] =
           static_cast<double>(edges[k].origin + first * edges[k].along_x + y * edges[k].along_y);
     }
-    const std::span<Eigen::Array4f> mixed = canvas->Mixing(last - first);
-    for (const ActiveLayer& layer : layers) {
+    const std::span<MixedPixel> mixed = canvas->Mixing(last - first);
+    for (const ActiveLayer& layer : brush.layers) {
       const Point from = place_of(*layer.pose, values), step = place_of(*layer.pose, along_x);
       for (std::size_t i = 0; i < mixed.size(); ++i) {
-        const Point place = from + static_cast<double>(i) * step;
-        mixed[i] += layer.weight * layer.texture->At(place, layer.level);
+        brush.Add(layer, from + static_cast<double>(i) * step, &mixed[i]);
       }
     }
+    for (MixedPixel& pixel : mixed) brush.Sharpen(&pixel);
     canvas->Over(first, y, mixed);
   }
 }
@@ -270,20 +340,22 @@ View FitView(const Point& low, const Point& high, int width, int height) {
 }
 
 Image Render(const Triangles& triangles, const Points& vertices,
-             std::span<const RenderLayer> layers, const View& view) {
+             std::span<const RenderLayer> layers, const View& view, PaintEdges edges) {
   if (view.width <= 0 || view.height <= 0) return {};
   Canvas canvas(view);
   if (!(view.scale > 0.0) || !std::isfinite(view.scale) || !view.origin.allFinite()) {
     return canvas.ToImage(view);
   }
-  const std::vector<ActiveLayer> active = ActiveLayers(triangles, vertices, layers, view);
+  Brush brush{ActiveLayers(triangles, vertices, layers, view), false, 0.0f};
+  brush.crisp = edges == PaintEdges::kCrisp && brush.layers.size() > 1;
+  for (const ActiveLayer& layer : brush.layers) brush.texel += layer.weight * layer.texel;
   std::vector<Fixed> fixed(vertices.rows());
   for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
     fixed[k] = ToFixed(vertices.row(k).transpose(), view);
   }
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     const std::array<int, 3> corners = {triangles(t, 0), triangles(t, 1), triangles(t, 2)};
-    DrawTriangle(corners, fixed, active, view, &canvas);
+    DrawTriangle(corners, fixed, brush, view, &canvas);
   }
   return canvas.ToImage(view);
 }

@@ -2,7 +2,7 @@
 #ifndef POSESPACE_DRAWING_RENDER_H_
 #define POSESPACE_DRAWING_RENDER_H_
 
-#include <memory>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,8 +12,8 @@
 namespace posespace {
 
 // A texture made ready for mixing: premultiplied alpha, linear light, float, with its reductions
-// to a half, a quarter, ... so that small pictures of it do not shimmer.
-// Immutable; share freely.  21 bytes a texel.
+// to a half, a quarter, ... so that small pictures of it do not shimmer; and how far each texel
+// lies from the edge of the painting.  Immutable; share freely.  24 bytes a texel.
 class RenderTexture {
  public:
   explicit RenderTexture(const Texture& texture);
@@ -25,6 +25,13 @@ class RenderTexture {
   // The level whose texels are nearest in size to pixels of `length` drawing pixels a side.
   int LevelFor(double length) const;
 
+  // The side of that level's texels, drawing pixels.
+  float TexelSize(int level) const { return static_cast<float>(1.0 / levels_[level].scale); }
+
+  // How far inside the painting a place lies (edge_distance.h), drawing pixels, bilinear; negative
+  // outside.
+  float EdgeDistanceAt(const Point& place) const;
+
  private:
   struct Level {
     int width;
@@ -35,6 +42,7 @@ class RenderTexture {
 
   Point origin_;
   std::vector<Level> levels_;
+  std::vector<std::int16_t> edge_distance_;  // of the texels of level 0
 };
 
 // One pose's part in a picture.
@@ -56,6 +64,15 @@ struct View {
 // The view that shows a box of drawing pixels centred in width x height with its aspect kept.
 View FitView(const Point& low, const Point& high, int width, int height);
 
+// What is drawn where some poses are painted and others are not.
+enum class PaintEdges {
+  // A sharp silhouette: painted where the weighted mean of the poses' distances from their edges
+  // says inside.  A stroke between a thin and a thick one has the mean width.
+  kCrisp,
+  // The mix of paint and transparency: pale ghosts of what only some poses have.
+  kSoft,
+};
+
 // Draws a mesh with the weighted mix of its poses' pixels.
 //
 // Each output pixel whose centre lies in a triangle takes, from every layer, the texel at the same
@@ -63,13 +80,15 @@ View FitView(const Point& low, const Point& high, int width, int height);
 // Triangles share their edges by a top-left rule: no seams, no pixel drawn twice by neighbours;
 // where the mesh overlaps itself, later triangles lie on top (where they are transparent, what is
 // below shows).  Silhouettes are antialiased by the textures' own alpha, since the mesh encloses
-// every painted pixel.  Coverage is decided on vertices rounded to 1/1024 output pixel.  A layer
-// shown smaller than its texture is taken from one reduction of it, chosen for the whole mesh.
+// every painted pixel; where poses disagree, as `edges` says, and nothing changes where they agree.
+// Coverage is decided on vertices rounded to 1/1024 output pixel.  A layer shown smaller than its
+// texture is taken from one reduction of it, chosen for the whole mesh.
 //
 // Requires  vertices V x 2, finite; each layer's pose has V rows.
 // Cost      O(pixels covered x layers).  Pure; call from any thread.
 Image Render(const Triangles& triangles, const Points& vertices,
-             std::span<const RenderLayer> layers, const View& view);
+             std::span<const RenderLayer> layers, const View& view,
+             PaintEdges edges = PaintEdges::kCrisp);
 
 }  // namespace posespace
 

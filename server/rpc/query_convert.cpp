@@ -188,6 +188,19 @@ void ToProto(const Frame& frame, bool with_weights, v1::Frame* out) {
   out->set_vertices(frame.vertices.data(), frame.vertices.size() * sizeof(float));
 }
 
+Result<PaintEdges> EdgesFromProto(v1::Edges edges) {
+  switch (edges) {
+    case v1::EDGES_UNSPECIFIED:
+    case v1::EDGES_CRISP:
+      return PaintEdges::kCrisp;
+    case v1::EDGES_SOFT:
+      return PaintEdges::kSoft;
+    default:
+      return ErrorAt(ErrorCode::kInvalidOption, "edges",
+                     "is " + std::to_string(edges) + ", which is not known here");
+  }
+}
+
 Result<View> ViewFromProto(const v1::RenderRequest& request, const PoseSpace& pose_space,
                            int max_side) {
   for (const auto& [field, side] :

@@ -49,6 +49,9 @@ double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query,
 // Vertices become little-endian float32 x0 y0 x1 y1 ...; weights are left out unless wanted.
 void ToProto(const Frame& frame, bool with_weights, v1::Frame* out);
 
+// Fails  kInvalidOption (unknown value).
+Result<PaintEdges> EdgesFromProto(v1::Edges edges);
+
 // What a picture shows: the request's box, or the pose space's default.
 // Fails  kInvalidOption (size, format, view).
 Result<View> ViewFromProto(const v1::RenderRequest& request, const PoseSpace& pose_space,

@@ -36,6 +36,7 @@ Result<void> RenderStream::Begin(const Session& session, const Limits& limits) {
   }
   pose_space_ = TRY(session.Built());
   view_ = TRY(ViewFromProto(request_, *pose_space_, limits.max_render_side));
+  edges_ = TRY(EdgesFromProto(request_.edges()));
   if (request_.has_animation()) {
     frames_ = TRY(AnimationFrames::From(request_.animation(), limits.max_render_frames));
   }
@@ -57,7 +58,7 @@ Result<v1::RenderResponse> RenderStream::Make(int index) {
   Frame frame = frames_ ? TRY(pose_space_->Blend(frames_->At(index)))
                         : TRY(BlendQuery(*pose_space_, request_.queries(index), QueryField(index),
                                          /*weights_only=*/false));
-  const Image image = pose_space_->Render(frame, view_);
+  const Image image = pose_space_->Render(frame, view_, edges_);
   v1::RenderResponse response;
   response.set_index(index);
   if (request_.format() == v1::IMAGE_FORMAT_RGBA) {

@@ -30,6 +30,7 @@ class RenderStream final : public SequenceStream<v1::RenderResponse> {
   std::shared_ptr<const PoseSpace> pose_space_;
   std::optional<AnimationFrames> frames_;  // without: the request's queries
   View view_;
+  PaintEdges edges_ = PaintEdges::kCrisp;
   std::int64_t reserved_ = 0;  // of the budget: as many pictures as may wait
 };
 

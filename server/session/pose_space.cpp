@@ -422,7 +422,7 @@ std::vector<Result<Frame>> PoseSpace::BlendAll(std::span<const Query> queries,
   return frames;
 }
 
-Image PoseSpace::Render(const Frame& frame, const View& view) const {
+Image PoseSpace::Render(const Frame& frame, const View& view, PaintEdges edges) const {
   if (frame.vertices.rows() != mesh().num_vertices()) {
     Image blank{view.width, view.height, {}};
     blank.rgba.resize(4 * static_cast<std::size_t>(view.width) * view.height);
@@ -433,7 +433,7 @@ Image PoseSpace::Render(const Frame& frame, const View& view) const {
   for (int i = 0; i < mesh().num_poses(); ++i) {
     layers.push_back({&mesh().poses[i], &textures[i], frame.texture_weights[i]});
   }
-  return posespace::Render(mesh().triangles, frame.vertices.cast<double>(), layers, view);
+  return posespace::Render(mesh().triangles, frame.vertices.cast<double>(), layers, view, edges);
 }
 
 View PoseSpace::DefaultView(int width, int height) const {
@@ -458,7 +458,7 @@ std::int64_t PoseSpace::MemoryBytes() const {
   // float for one.
   constexpr std::int64_t kPerTriangleAndPose = 2 * 4 * (2 * sizeof(double) + sizeof(float));
   constexpr std::int64_t kPerVertex = 2 * (2 * 40 * sizeof(double) + 160 * sizeof(float));
-  constexpr std::int64_t kPerTexel = 21;
+  constexpr std::int64_t kPerTexel = 24;
   std::int64_t bytes =
       std::int64_t{mesh().num_triangles()} * mesh().num_poses() * kPerTriangleAndPose +
       mesh().num_vertices() * kPerVertex + state_->weights.MemoryBytes();

@@ -140,7 +140,7 @@ class PoseSpace {
   // The blend of a query as a picture; transparent when the frame has no vertices.  The first
   // picture makes the textures ready and takes longer, up to some 50 ms a megapixel.
   // Requires  a frame of this pose space; a view whose size is bounded by the caller.
-  Image Render(const Frame& frame, const View& view) const;
+  Image Render(const Frame& frame, const View& view, PaintEdges edges = PaintEdges::kCrisp) const;
 
   // The view that every picture of this pose space uses unless told otherwise: the box of all poses
   // and of the blends halfway from each to its four nearest in pose space, with a margin of a

@@ -236,6 +236,19 @@ def test_a_render_is_opaque_inside_clear_outside_and_straight_at_the_edge(walk):
     assert pixels[..., :3][edge].max(axis=1).mean() > 100, "colours at the edge are darkened"
 
 
+def test_crisp_edges_leave_fewer_faint_pixels_than_soft_ones(walk):
+    at_pose = {"stand": 1.0}
+    assert (walk.render(weights=at_pose) == walk.render(weights=at_pose, edges="soft")).all()
+
+    def faint(edges):
+        alpha = walk.render(at=(0.3, 0.3), edges=edges)[..., 3]
+        return ((alpha > 5) & (alpha < 250)).sum()
+
+    assert faint("crisp") < 0.9 * faint("soft")
+    with pytest.raises(posespace.InvalidArgument, match="edges"):
+        walk.render(at=(0.3, 0.3), edges="jagged")
+
+
 def test_a_view_shows_its_part_of_the_drawing(walk):
     whole = walk.render(weights={"stand": 1}, size=(200, 260), view=(0, 0, 200, 260))
     head = walk.render(weights={"stand": 1}, size=(80, 80), view=(60, 10, 80, 80))

@@ -294,6 +294,8 @@ TEST_F(ClientTest, RendersPictures) {
   EXPECT_EQ(picture.rgba[4 * (24 * 64 + 32) + 3], 255) << "the middle is not";
   const Frame frame = stars().Blend({0.5, 0.0});
   EXPECT_EQ(stars().Render(frame.weights, {.width = 64, .height = 48}).rgba, picture.rgba);
+  const RenderOptions soft{.width = 64, .height = 48, .view = {}, .edges = Edges::kSoft};
+  EXPECT_NE(stars().Render({0.5, 0.0}, soft).rgba, picture.rgba);
   EXPECT_THAT(
       [&] {
         stars().Render({0, 0}, {.width = 0});

@@ -202,6 +202,13 @@ TEST(View, ShowsTheBoxOrThePoseSpacesOwn) {
   EXPECT_DOUBLE_EQ(view->origin.x(), 10.0);
 }
 
+TEST(View, HasCrispEdgesUnlessToldOtherwiseAndRefusesUnknownOnes) {
+  EXPECT_EQ(EdgesFromProto(v1::EDGES_UNSPECIFIED).value(), PaintEdges::kCrisp);
+  EXPECT_EQ(EdgesFromProto(v1::EDGES_CRISP).value(), PaintEdges::kCrisp);
+  EXPECT_EQ(EdgesFromProto(v1::EDGES_SOFT).value(), PaintEdges::kSoft);
+  EXPECT_THAT(EdgesFromProto(static_cast<v1::Edges>(7)), FailsWith(ErrorCode::kInvalidOption));
+}
+
 TEST(View, RefusesSizesFormatsAndBoxesThatCannotBe) {
   const auto pose_space = TwoEllipses();
   const auto refused = [&](auto&& change) {

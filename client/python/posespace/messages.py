@@ -24,6 +24,7 @@ BlendMethod = Literal["rigid", "linear", "paper"]
 ShearLimit = Literal["band", "hermite", "off"]
 StretchBlend = Literal["linear", "log", "metric"]
 Foreground = Literal["alpha", "light", "dark"]
+Edges = Literal["crisp", "soft"]
 Place = Sequence[float] | NDArray[np.floating[Any]]  # x and y
 
 _METHODS = {
@@ -36,6 +37,10 @@ _SHEAR_LIMITS = {
     "band": pose_service_pb2.SHEAR_LIMIT_BAND,
     "hermite": pose_service_pb2.SHEAR_LIMIT_HERMITE,
     "off": pose_service_pb2.SHEAR_LIMIT_OFF,
+}
+_EDGES = {
+    "crisp": pose_service_pb2.EDGES_CRISP,
+    "soft": pose_service_pb2.EDGES_SOFT,
 }
 _STRETCHES = {
     "linear": pose_service_pb2.STRETCH_BLEND_LINEAR,
@@ -111,6 +116,11 @@ def point(xy: Place, what: str) -> geometry_pb2.Point:
         if len(xy) == 2:
             return geometry_pb2.Point(x=float(xy[0]), y=float(xy[1]))
     raise InvalidArgument(f"{what} must be x and y, not {xy!r}", reason="INVALID_OPTION")
+
+
+def edges_value(edges: Edges) -> pose_service_pb2.Edges:
+    """What a picture shows where some drawings are painted and others are not."""
+    return choice("edges", edges, _EDGES)
 
 
 def box(view: Sequence[float]) -> geometry_pb2.Box:

@@ -16,7 +16,7 @@ from posespace.animation import Easing, Waypoints, animation
 from posespace.authoring import Authoring
 from posespace.channel import Channel
 from posespace.errors import Error, NotFound
-from posespace.messages import BlendMethod, Place, ShearLimit, StretchBlend
+from posespace.messages import BlendMethod, Edges, Place, ShearLimit, StretchBlend
 from posespace.pictures import decode_png
 from posespace.player import Player
 from posespace.results import AnimationFrame, Frame, Mesh
@@ -175,6 +175,7 @@ class Session(Authoring):
         stretch: StretchBlend = "linear",
         repair: bool = False,
         sigma: float = 0.0,
+        edges: Edges = "crisp",
     ) -> NDArray[np.uint8]:
         """A picture of the drawing there: (H, W, 4) uint8, rows from the top, straight alpha, sRGB.
 
@@ -183,10 +184,13 @@ class Session(Authoring):
         size  Width and height, 1 to 4096.
         view  What to show: x, y, width, height in drawing pixels, fitted with its aspect kept.  By
               default the box of all drawings and of their halves, with a margin; the same always.
+        edges What is shown where some drawings are painted and others are not: "crisp" a sharp
+              silhouette, by the weighted mean of the distances from their edges; "soft" the mix of
+              paint and transparency, with ghosts of what only some drawings have.
 
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
-        request = self._render_request(size, view)
+        request = self._render_request(size, view, edges)
         options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         channel = self._channel
 
@@ -265,6 +269,7 @@ class Session(Authoring):
         stretch: StretchBlend = "linear",
         repair: bool = False,
         sigma: float = 0.0,
+        edges: Edges = "crisp",
     ) -> Generator[NDArray[np.uint8], None, None]:
         """Pictures along a smooth path, one by one: (H, W, 4) uint8 each.
 
@@ -273,7 +278,7 @@ class Session(Authoring):
 
         At most 10,000 frames.  Path and streaming as in `animate`, pictures as in `render`.
         """
-        request = self._render_request(size, view)
+        request = self._render_request(size, view, edges)
         options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
         request.animation.CopyFrom(animation(path, fps, easing, loop, duration, options))
         return self._animation_pictures(request)
@@ -291,7 +296,10 @@ class Session(Authoring):
         return Player(self._channel, self._id, revision)
 
     def _render_request(
-        self, size: tuple[int, int], view: tuple[float, float, float, float] | None
+        self,
+        size: tuple[int, int],
+        view: tuple[float, float, float, float] | None,
+        edges: Edges,
     ) -> pose_service_pb2.RenderRequest:
         width, height = messages.picture_size(size)
         request = messages.make(
@@ -300,6 +308,7 @@ class Session(Authoring):
             width=width,
             height=height,
             format=pose_service_pb2.IMAGE_FORMAT_RGBA,
+            edges=messages.edges_value(edges),
         )
         if view is not None:
             request.view.CopyFrom(messages.box(view))

@@ -136,12 +136,19 @@ struct BuildOptions {
   std::stop_token stop = {};
 };
 
+// What a picture shows where some drawings are painted and others are not.
+enum class Edges {
+  kCrisp,  // a sharp silhouette, by the weighted mean of the distances from the drawings' edges
+  kSoft,   // the mix of paint and transparency
+};
+
 struct RenderOptions {
   int width = 512;  // pixels, 1 to 4096
   int height = 512;
   // What to show, fitted with its aspect kept; by default the box of all drawings and of their
   // halves, with a margin; the same always.
   std::optional<Box> view = {};
+  Edges edges = Edges::kCrisp;
   BlendOptions blend = {};
 };
 

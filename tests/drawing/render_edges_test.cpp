@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "drawing/render.h"
+#include "tests/support/pictures.h"
+#include "tests/support/points.h"
+
+namespace posespace {
+namespace {
+
+constexpr int kSide = 64;
+
+// Two drawings on the same square mesh, mixed.
+Image Mix(const Image& first, const Image& second, double share_of_second, PaintEdges edges,
+          double magnification = 1.0) {
+  const RenderTexture a({first}), b({second});
+  Points square(4, 2);
+  square << 0, 0, kSide, 0, kSide, kSide, 0, kSide;
+  Triangles triangles(2, 3);
+  triangles << 0, 1, 2, 0, 2, 3;
+  const RenderLayer layers[] = {{&square, &a, 1.0 - share_of_second},
+                                {&square, &b, share_of_second}};
+  const int side = static_cast<int>(kSide * magnification);
+  return Render(triangles, square, layers, {{0, 0}, magnification, side, side}, edges);
+}
+
+// A vertical stroke in the middle.
+Image Stroke(int width, Colour colour = kBlack) {
+  Image image = PictureOf(kSide, kSide);
+  PaintBox(&image, (kSide - width) / 2, 0, width, kSide, colour);
+  return image;
+}
+
+// Opacity of the middle row.
+std::vector<double> Row(const Image& image) {
+  std::vector<double> row;
+  for (int x = 0; x < image.width; ++x) {
+    row.push_back(image.at(x, image.height / 2)[3] / 255.0);
+  }
+  return row;
+}
+
+double WidthOf(const std::vector<double>& row) {
+  double width = 0.0;
+  for (const double each : row) width += each;
+  return width;
+}
+
+// Pixels that are neither painted nor clear.
+int Faint(const std::vector<double>& row) {
+  return static_cast<int>(
+      std::count_if(row.begin(), row.end(), [](double a) { return a > 0.02 && a < 0.98; }));
+}
+
+TEST(CrispEdges, GiveAStrokeBetweenThinAndThickTheMeanWidth) {
+  for (const double share : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+    const std::vector<double> row = Row(Mix(Stroke(4), Stroke(24), share, PaintEdges::kCrisp));
+    EXPECT_NEAR(WidthOf(row), 4 + 20 * share, 0.5) << share;
+    EXPECT_LE(Faint(row), 2) << share;
+  }
+}
+
+TEST(CrispEdges, StaySharpInAMagnifiedPictureOfALargerOne) {
+  const std::vector<double> row = Row(Mix(Stroke(4), Stroke(24), 0.5, PaintEdges::kCrisp, 4.0));
+  EXPECT_NEAR(WidthOf(row), 4 * 14, 2.0);
+  EXPECT_LE(Faint(row), 2 * 4);  // a texel on either side
+}
+
+TEST(CrispEdges, AreSoftOnRequest) {
+  const std::vector<double> row = Row(Mix(Stroke(4), Stroke(24), 0.5, PaintEdges::kSoft));
+  EXPECT_GE(Faint(row), 18);
+}
+
+TEST(CrispEdges, PaintWithTheColourOfThoseThatArePainted) {
+  const Image mixed = Mix(Stroke(4, kRed), Stroke(24, kBlue), 0.5, PaintEdges::kCrisp);
+  const std::uint8_t* beside = mixed.at(kSide / 2 + 5, kSide / 2);
+  EXPECT_EQ(beside[0], 0);
+  EXPECT_EQ(beside[2], 255);
+  EXPECT_EQ(beside[3], 255);
+}
+
+TEST(CrispEdges, ChangeNothingWhereDrawingsAgree) {
+  Image shaded = PictureOf(kSide, kSide);
+  PaintDisc(&shaded, 32, 32, 28, {90, 60, 30, 60});  // a shade, fainter than an edge
+  PaintDisc(&shaded, 32, 32, 20, {10, 200, 30, 255});
+  PaintDisc(&shaded, 32, 32, 10, {200, 20, 30, 180});
+  const Image crisp = Mix(shaded, shaded, 0.4, PaintEdges::kCrisp);
+  const Image soft = Mix(shaded, shaded, 0.4, PaintEdges::kSoft);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      EXPECT_NEAR(crisp.at(x, y)[3], soft.at(x, y)[3], 1) << x << ", " << y;
+    }
+  }
+}
+
+TEST(CrispEdges, BecomeThoseOfADrawingAsItsWeightGrows) {
+  Image disc = PictureOf(kSide, kSide);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const double inside = 17.3 - std::hypot(x + 0.5 - 30, y + 0.5 - 34);
+      disc.at(x, y)[3] = static_cast<std::uint8_t>(255 * std::clamp(inside + 0.5, 0.0, 1.0));
+    }
+  }
+  const Image alone = Mix(disc, Stroke(9), 0.0, PaintEdges::kCrisp);
+  const double perimeter = 2 * 3.14 * 17.3;
+  for (const double share : {0.1, 0.03, 0.01, 0.003}) {
+    const Image mixed = Mix(disc, Stroke(9), share, PaintEdges::kCrisp);
+    double difference = 0.0;
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        difference += std::abs(mixed.at(x, y)[3] - alone.at(x, y)[3]) / 255.0;
+      }
+    }
+    // An edge moves by a share of the way to the other drawing's, and no two lie 30 pixels apart.
+    EXPECT_LT(difference, (30 * share + 0.01) * perimeter) << share;
+    EXPECT_GT(difference, 0.0) << share;
+  }
+}
+
+TEST(CrispEdges, LeaveNothingOfADrawingThatIsEmptyElsewhere) {
+  const Image nothing = PictureOf(kSide, kSide);
+  for (const double share : {0.3, 0.7}) {
+    const std::vector<double> row = Row(Mix(Stroke(10), nothing, share, PaintEdges::kCrisp));
+    EXPECT_LE(Faint(row), 2);
+    EXPECT_EQ(WidthOf(row), 0.0);
+  }
+}
+
+TEST(CrispEdges, TakeATextureWithoutTexelsAsNotPainted) {
+  const std::vector<double> row = Row(Mix(Stroke(10), Image{}, 0.5, PaintEdges::kCrisp));
+  EXPECT_EQ(WidthOf(row), 0.0);
+}
+
+}  // namespace
+}  // namespace posespace
