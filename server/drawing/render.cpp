@@ -187,8 +187,15 @@ std::vector<ActiveLayer> ActiveLayers(const Triangles& triangles, const Points& 
 // What the layers come to at one pixel.
 struct MixedPixel {
   Eigen::Array4f colour = Eigen::Array4f::Zero();  // premultiplied linear
-  float covered = 0.0f;  // mean of the layers' coverages, 1 inside and 0 outside their edges
-  float inside = 0.0f;   // mean distance inside the edge, drawing pixels
+  float least_alpha = 1.0f, most_alpha = 0.0f;     // of a layer
+
+  void Add(const Eigen::Array4f& layer, float weight) {
+    colour += weight * layer;
+    least_alpha = std::min(least_alpha, layer[3]);
+    most_alpha = std::max(most_alpha, layer[3]);
+  }
+  // All layers are opaque there, or none is to be seen.
+  bool IsUndisputed() const { return least_alpha > 0.98f || most_alpha < 0.02f; }
 };
 
 // How much of a texel is painted that lies so many texels inside an edge.
@@ -207,29 +214,31 @@ float TexelsInside(float alpha, float distance) {
   return std::lerp(near, distance, std::clamp(std::abs(distance) - 1.0f, 0.0f, 1.0f));
 }
 
+// The places in a layer's drawing of a run of pixels.
+struct Run {
+  Point from, step;
+  Point At(std::size_t pixel) const { return from + static_cast<double>(pixel) * step; }
+};
+
 // All that is drawn with.
 struct Brush {
   std::vector<ActiveLayer> layers;
-  bool crisp;   // two layers or more may disagree about what is painted
-  float texel;  // mean over the layers
+  bool crisp = false;  // two layers or more may disagree about what is painted
+  float texel = 0.0f;  // mean over the layers
 
-  // Adds a layer's texel at a place to a pixel.
-  void Add(const ActiveLayer& layer, const Point& place, MixedPixel* pixel) const {
-    const Eigen::Array4f colour = layer.texture->At(place, layer.level);
-    pixel->colour += layer.weight * colour;
-    if (!crisp) return;
-    const float distance = layer.texture->EdgeDistanceAt(place);
-    const float texels = TexelsInside(colour[3], distance / layer.texel);
-    pixel->covered += layer.weight * Coverage(texels);
-    pixel->inside += layer.weight * layer.texel * texels;
-  }
-
-  // Makes the pixel as opaque as the layers that are painted there, if it is to be painted.  Where
+  // Makes a pixel as opaque as the layers that are painted there, if it is to be painted.  Where
   // the layers agree it stays as it is, and so do shades fainter than an edge.
-  void Sharpen(MixedPixel* pixel) const {
-    if (crisp && pixel->covered > 0.0f) {
-      pixel->colour *= Coverage(pixel->inside / texel) / pixel->covered;
+  void Sharpen(std::span<const Run> runs, std::size_t index, MixedPixel* pixel) const {
+    float covered = 0.0f, inside = 0.0f;  // means over the layers; inside in drawing pixels
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      const ActiveLayer& layer = layers[k];
+      const Point place = runs[k].At(index);
+      const float alpha = layer.texture->At(place, layer.level)[3];
+      const float texels = TexelsInside(alpha, layer.texture->EdgeDistanceAt(place) / layer.texel);
+      covered += layer.weight * Coverage(texels);
+      inside += layer.weight * layer.texel * texels;
     }
+    if (covered > 0.0f) pixel->colour *= Coverage(inside / texel) / covered;
   }
 };
 
@@ -307,6 +316,7 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
   const std::array<double, 3> along_x = {static_cast<double>(edges[0].along_x),
                                          static_cast<double>(edges[1].along_x),
                                          static_cast<double>(edges[2].along_x)};
+  std::vector<Run> runs;  // one a layer
   for (int y = static_cast<int>(first_row); y <= last_row; ++y) {
     const auto [first, last] = CoveredSpan(edges, y, view.width);
     if (first >= last) continue;
@@ -316,13 +326,17 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
           static_cast<double>(edges[k].origin + first * edges[k].along_x + y * edges[k].along_y);
     }
     const std::span<MixedPixel> mixed = canvas->Mixing(last - first);
+    runs.clear();
     for (const ActiveLayer& layer : brush.layers) {
-      const Point from = place_of(*layer.pose, values), step = place_of(*layer.pose, along_x);
+      const Run run{place_of(*layer.pose, values), place_of(*layer.pose, along_x)};
       for (std::size_t i = 0; i < mixed.size(); ++i) {
-        brush.Add(layer, from + static_cast<double>(i) * step, &mixed[i]);
+        mixed[i].Add(layer.texture->At(run.At(i), layer.level), layer.weight);
       }
+      runs.push_back(run);
     }
-    for (MixedPixel& pixel : mixed) brush.Sharpen(&pixel);
+    for (std::size_t i = 0; brush.crisp && i < mixed.size(); ++i) {
+      if (!mixed[i].IsUndisputed()) brush.Sharpen(runs, i, &mixed[i]);
+    }
     canvas->Over(first, y, mixed);
   }
 }
@@ -346,7 +360,7 @@ Image Render(const Triangles& triangles, const Points& vertices,
   if (!(view.scale > 0.0) || !std::isfinite(view.scale) || !view.origin.allFinite()) {
     return canvas.ToImage(view);
   }
-  Brush brush{ActiveLayers(triangles, vertices, layers, view), false, 0.0f};
+  Brush brush{ActiveLayers(triangles, vertices, layers, view)};
   brush.crisp = edges == PaintEdges::kCrisp && brush.layers.size() > 1;
   for (const ActiveLayer& layer : brush.layers) brush.texel += layer.weight * layer.texel;
   std::vector<Fixed> fixed(vertices.rows());
