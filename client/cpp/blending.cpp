@@ -246,6 +246,39 @@ Animation Session::Animate(std::span<const Point> path, const AnimateOptions& op
   return Animate(waypoints, options);
 }
 
+// Pictures that are being read.
+struct PictureStream::State {
+  int width, height;
+  internal::Clock::duration patience;  // between two pictures
+  internal::Answers answers;
+};
+
+PictureStream::PictureStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PictureStream::PictureStream(PictureStream&&) noexcept = default;
+PictureStream& PictureStream::operator=(PictureStream&&) noexcept = default;
+PictureStream::~PictureStream() = default;
+
+std::optional<Picture> PictureStream::Next() {
+  v1::RenderResponse response;
+  if (!state_->answers.Next(&response, internal::Clock::now() + state_->patience)) {
+    return std::nullopt;
+  }
+  const std::string& image = response.image();
+  return Picture{state_->width, state_->height, {image.begin(), image.end()}};
+}
+
+PictureStream Session::RenderAnimation(std::span<const Waypoint> path,
+                                       const AnimateOptions& animation,
+                                       const RenderOptions& picture) const {
+  auto request = std::make_unique<v1::RenderRequest>(internal::RenderRequestOf(id(), picture));
+  v1::AnimateRequest along;
+  ToMessage(animation, path, &along);
+  *request->mutable_animation() = std::move(*along.mutable_animation());
+  return PictureStream(std::make_unique<PictureStream::State>(
+      PictureStream::State{picture.width, picture.height, handle_->channel->timeout(),
+                           internal::Answers(handle_->channel, std::move(request))}));
+}
+
 Player Session::Play(const std::string& revision) const {
   return Player(handle_->channel, id(), revision);
 }

@@ -126,8 +126,8 @@ std::optional<Error> Channel::Try(const Message& request, Message* response,
   return ErrorOfCall(Failed(status), address_, SecondsOf(timeout_), request.ByteSizeLong());
 }
 
-void Channel::Call(const Message& request, Message* response) const {
-  const auto give_up = Clock::now() + timeout_;
+void Channel::Call(const Message& request, Message* response, Clock::duration beyond) const {
+  const auto give_up = Clock::now() + timeout_ + beyond;
   for (;;) {
     const auto shared = std::max(Clock::duration::zero(), give_up - Clock::now());
     const auto refusal = Try(request, response, shared);

@@ -31,8 +31,10 @@ class Channel {
   std::chrono::milliseconds timeout() const { return timeout_; }
 
   // Fills the answer of a call, or throws Error.  What the service refuses for now, with a time
-  // after which to try again, is tried again until the timeout would pass.
-  void Call(const google::protobuf::Message& request, google::protobuf::Message* response) const;
+  // after which to try again, is tried again until the timeout would pass; a slow call gets some
+  // time beyond it.
+  void Call(const google::protobuf::Message& request, google::protobuf::Message* response,
+            Clock::duration beyond = {}) const;
 
   // The same, but tried until `give_up` or until `stop` is asked for, each try with the whole
   // timeout.

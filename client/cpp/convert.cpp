@@ -119,14 +119,19 @@ BuildState FromMessage(v1::BuildState state) {
 
 Point FromMessage(const v1::Point& message) { return {message.x(), message.y()}; }
 
+GhostLoss FromMessage(const v1::GhostLoss& message) { return {message.before(), message.after()}; }
+
+Ring FromMessage(const v1::Ring& message) {
+  Ring ring;
+  for (int k = 0; k + 1 < message.coordinates_size(); k += 2) {
+    ring.push_back({message.coordinates(k), message.coordinates(k + 1)});
+  }
+  return ring;
+}
+
 std::vector<Ring> FromMessage(const google::protobuf::RepeatedPtrField<v1::Ring>& messages) {
   std::vector<Ring> rings;
-  for (const v1::Ring& message : messages) {
-    Ring& ring = rings.emplace_back();
-    for (int k = 0; k + 1 < message.coordinates_size(); k += 2) {
-      ring.push_back({message.coordinates(k), message.coordinates(k + 1)});
-    }
-  }
+  for (const v1::Ring& message : messages) rings.push_back(FromMessage(message));
   return rings;
 }
 
@@ -242,7 +247,8 @@ Shape FromMessage(const v1::Shape& message) {
           FromMessage(message.outline()),
           message.holes_filled(),
           {message.warnings().begin(), message.warnings().end()},
-          FromMessage(message.texture())};
+          FromMessage(message.texture()),
+          message.flipped()};
 }
 
 BuildReport FromMessage(const v1::BuildReport& message) {
@@ -257,7 +263,23 @@ BuildReport FromMessage(const v1::BuildReport& message) {
   report.seconds = {message.seconds().begin(), message.seconds().end()};
   report.confidence = {message.confidence().begin(), message.confidence().end()};
   report.warnings = {message.warnings().begin(), message.warnings().end()};
+  if (message.has_ghost_loss()) report.ghost_loss = FromMessage(message.ghost_loss());
+  for (const auto& [shape_id, loss] : message.ghost_losses()) {
+    report.ghost_losses[shape_id] = FromMessage(loss);
+  }
   return report;
+}
+
+Suggestion FromMessage(const v1::SuggestCorrespondencesResponse& message) {
+  Suggestion suggestion;
+  for (const v1::ShapeSuggestion& shape : message.shapes()) {
+    suggestion.confidence[shape.shape_id()] = shape.confidence();
+    if (shape.flip()) suggestion.flips.push_back(shape.shape_id());
+    suggestion.arcs[shape.shape_id()] = FromMessage(shape.arc());
+  }
+  suggestion.flip_gain = message.flip_gain();
+  suggestion.etag = message.etag();
+  return suggestion;
 }
 
 BuildStatus FromMessage(const v1::Build& message) {

@@ -32,6 +32,7 @@ Shape FromMessage(const v1::Shape& message);
 BuildReport FromMessage(const v1::BuildReport& message);
 BuildStatus FromMessage(const v1::Build& message);
 SessionState FromMessage(const v1::Session& message);
+Suggestion FromMessage(const v1::SuggestCorrespondencesResponse& message);
 Mesh FromMessage(const v1::Mesh& message);
 Frame FromMessage(const v1::Frame& message, const std::vector<std::string>& shape_ids,
                   const std::string& revision);

@@ -9,6 +9,11 @@
 #include "client/cpp/session_handle.h"
 
 namespace posespace {
+namespace {
+
+constexpr std::chrono::seconds kMatching{60};  // longer than other calls take
+
+}  // namespace
 
 using internal::FromMessage;
 using internal::ToMessage;
@@ -33,11 +38,12 @@ void Session::Delete(const std::string& etag) {
   handle_->channel->Call(request, &response);
 }
 
-Shape Session::PutShape(const std::string& shape_id, ShapeSource source, bool replace) {
+Shape Session::PutShape(const std::string& shape_id, ShapeSource source, bool replace, bool flip) {
   v1::PutShapeRequest request;
   request.set_session_id(id());
   request.set_shape_id(shape_id);
   request.set_replace(replace);
+  request.set_flip(flip);
   ToMessage(std::move(source), &request);
   v1::PutShapeResponse response;
   handle_->channel->Call(request, &response);
@@ -85,6 +91,15 @@ SessionState Session::SetCorrespondences(const std::vector<std::map<std::string,
   return FromMessage(response.session());
 }
 
+Suggestion Session::Suggest(std::optional<int> samples) const {
+  v1::SuggestCorrespondencesRequest request;
+  request.set_session_id(id());
+  if (samples) request.set_samples(*samples);
+  v1::SuggestCorrespondencesResponse response;
+  handle_->channel->Call(request, &response, kMatching);
+  return FromMessage(response);
+}
+
 SessionState Session::SetPlacements(const std::map<std::string, Point>& placements,
                                     const std::string& etag) {
   v1::SetPlacementsRequest request;
@@ -108,6 +123,7 @@ v1::StartBuildRequest BuildRequest(const std::string& session_id, const BuildOpt
   v1::BuildOptions& message = *request.mutable_options();
   if (options.tolerance) message.set_tolerance(*options.tolerance);
   if (options.target_edge_length) message.set_target_edge_length(*options.target_edge_length);
+  if (options.align) message.set_align(*options.align);
   return request;
 }
 

@@ -19,6 +19,7 @@ from synthetic_drawings import wavy_blob
 NOBODY = "127.0.0.1:1"
 COMMANDS = [
     ["build"],
+    ["suggest"],
     ["blend"],
     ["render"],
     ["animate"],

@@ -304,6 +304,58 @@ TEST_F(ClientTest, RendersPictures) {
   EXPECT_THAT(stars().TexturePng("up"), ::testing::StartsWith("\x89PNG"));
 }
 
+TEST_F(ClientTest, DrawsPicturesAlongAPath) {
+  const std::vector<Waypoint> path = {{{0.5, 0.0}}, {{0.0, 0.5}}};
+  PictureStream pictures = stars().RenderAnimation(path, {.fps = 4}, {.width = 40, .height = 30});
+  const std::optional<Picture> first = pictures.Next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->rgba, stars().Render({0.5, 0.0}, {.width = 40, .height = 30}).rgba);
+  int count = 1;
+  while (const auto picture = pictures.Next()) {
+    ++count;
+    EXPECT_EQ(picture->rgba.size(), 4u * 40 * 30);
+  }
+  EXPECT_EQ(count, 5);
+  EXPECT_THAT([&] { stars().RenderAnimation({}, {}).Next(); },
+              Refuses(ErrorCode::kInvalidArgument, "PATH_INVALID"));
+}
+
+TEST_F(ClientTest, SuggestsMatchesAndKeepsAcceptedFlips) {
+  Session session = client_.CreateSession();
+  EXPECT_THAT([&] { session.Suggest(); }, Refuses(ErrorCode::kNotBuilt, "NO_SHAPES"));
+  // The letter L, twice, and once in a mirror.
+  const Ring letter = {{0, 0}, {20, 0}, {20, 80}, {70, 80}, {70, 100}, {0, 100}};
+  Ring mirrored = letter;
+  for (Point& point : mirrored) point.x = 70 - point.x;
+  session.PutShape("a", PolygonSource{.outer = letter});
+  session.PutShape("b", PolygonSource{.outer = letter});
+  EXPECT_FALSE(session.PutShape("c", PolygonSource{.outer = mirrored}).flipped);
+  const Suggestion before = session.Suggest(16);
+  EXPECT_EQ(before.flips, std::vector<std::string>{"c"});
+  EXPECT_GE(before.flip_gain, 1.05);
+  EXPECT_LT(before.confidence.at("c"), 0.5);
+  EXPECT_EQ(before.arcs.at("a").size(), 16u);
+  EXPECT_EQ(before.etag, session.State().etag);
+
+  EXPECT_TRUE(session
+                  .PutShape("c", PolygonSource{.outer = mirrored}, /*replace=*/true,
+                            /*flip=*/true)
+                  .flipped);
+  const Suggestion after = session.Suggest();
+  EXPECT_TRUE(after.flips.empty());
+  EXPECT_EQ(after.flip_gain, 1.0);
+  EXPECT_GT(after.confidence.at("c"), 0.5);
+  EXPECT_EQ(after.arcs.at("a").size(), 64u);
+}
+
+TEST_F(ClientTest, TellsWhatAlignmentGained) {
+  Session session = client_.CreateSession();
+  session.PutShape("star", Star(5));
+  session.PutShape("other", Star(6));
+  EXPECT_FALSE(session.Build({.align = false}).ghost_loss);  // one colour: nothing to align
+  EXPECT_TRUE(session.Build().ghost_losses.empty());
+}
+
 TEST_F(ClientTest, BuildsAndBlendsASessionOfOneDrawing) {
   Session session = client_.CreateSession();
   session.PutShape("only", Star());

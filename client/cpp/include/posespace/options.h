@@ -127,6 +127,8 @@ struct BuildOptions {
   std::optional<double> tolerance = {};
   // Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
   std::optional<double> target_edge_length = {};
+  // Moves inner vertices so that what is drawn inside corresponds, eyes to eyes; by default true.
+  std::optional<bool> align = {};
   // Called by the thread that waits, with the stage's name and the fraction done, which never
   // falls. What it throws cancels the build and passes through.
   std::function<void(std::string_view stage, double fraction)> on_progress = {};

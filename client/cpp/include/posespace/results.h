@@ -36,6 +36,14 @@ struct Shape {
   int holes_filled = 0;               // covered by the mesh; transparency keeps them see-through
   std::vector<std::string> warnings;  // what was done to the drawing, in words
   TexturePlacement texture;
+  bool flipped = false;  // kept as its mirror image
+};
+
+// How much detail a mix of drawings in equal parts loses, 0 to 1: where an eye lies on a cheek,
+// both are pale ghosts.
+struct GhostLoss {
+  double before = 0.0;  // the insides of the drawings were aligned
+  double after = 0.0;
 };
 
 // How a build went.
@@ -50,6 +58,22 @@ struct BuildReport {
   std::map<std::string, double> seconds;  // by stage
   std::map<std::string, double> confidence;  // by drawing: how clear its matching was, in (0, 1]
   std::vector<std::string> warnings;         // what a person should know
+  // Of all drawings mixed; none when alignment was switched off or had nothing to do.
+  std::optional<GhostLoss> ghost_loss;
+  std::map<std::string, GhostLoss> ghost_losses;  // by drawing: what the mix loses of its detail
+};
+
+// What automatic matching would do with the drawings and marks as they were.
+struct Suggestion {
+  std::map<std::string, double> confidence;  // by drawing, in (0, 1]; below 0.5 look at it
+  std::vector<std::string> flips;            // would fit the others better seen in a mirror
+  // How much better with all of them: the cost of matching as they are over that with the flips, at
+  // least 1.05; 1 when there are none.
+  double flip_gain = 1.0;
+  // By drawing: places around its outline, drawing pixels; place k of every drawing is the same.
+  // The first is where all outlines turn most, a tip or a notch.
+  std::map<std::string, std::vector<Point>> arcs;
+  std::string etag;  // of the session that was looked at
 };
 
 enum class BuildState { kQueued, kRunning, kSucceeded, kFailed, kCancelled };

@@ -43,6 +43,24 @@ class Animation {
   std::unique_ptr<State> state_;
 };
 
+// The pictures of Session::RenderAnimation, one by one; else as Animation.
+class PictureStream {
+ public:
+  PictureStream(PictureStream&&) noexcept;
+  PictureStream& operator=(PictureStream&&) noexcept;
+  ~PictureStream();
+
+  // The next picture, or none after the last.  Throws Error as Session::Render.
+  std::optional<Picture> Next();
+
+ private:
+  friend class Session;
+  struct State;
+  explicit PictureStream(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
 // A session of the service: drawings of one character, placed in a plane, and every drawing in
 // between.  Made by Client.
 //
@@ -78,8 +96,10 @@ class Session {
   // Adds a drawing and answers how it was understood.  The source is sent, not copied, when moved
   // in. Throws kInvalidDrawing (the message says why no outline can be made of it), kAlreadyExists
   // when the id has another drawing and `replace` is not set, kResourceExhausted when it is too
-  // large to send.
-  posespace::Shape PutShape(const std::string& shape_id, ShapeSource source, bool replace = false);
+  // large to send.  With `flip` its mirror image is kept, left and right exchanged about the middle
+  // of the picture: what a person accepts of Suggest.
+  posespace::Shape PutShape(const std::string& shape_id, ShapeSource source, bool replace = false,
+                            bool flip = false);
 
   // A drawing's outline and warnings.  Throws kNotFound.
   posespace::Shape Shape(const std::string& shape_id) const;
@@ -99,6 +119,13 @@ class Session {
   // LANDMARKS_OUT_OF_ORDER, ...), kNotFound, kConflict when `etag` is given and outdated.
   SessionState SetCorrespondences(const std::vector<std::map<std::string, Point>>& tuples,
                                   const std::string& etag = {});
+
+  // What automatic matching would do with the drawings and marks as they are; nothing is changed.
+  // `samples` places of the outline are answered, 1 to 1024; 64 by default.  Takes as long as a
+  // build's matching, for which it waits a minute beyond the client's timeout.
+  // Throws kNotBuilt (NO_SHAPES) without drawings, kInvalidArgument when drawings or marks
+  // contradict each other.
+  Suggestion Suggest(std::optional<int> samples = {}) const;
 
   // Places every drawing in pose space; a built session follows at once, with a new revision.  None
   // at all returns to the default, the unit circle in the order of upload.
@@ -120,8 +147,8 @@ class Session {
   // kResourceExhausted when the queue stays full for the timeout, kDeadlineExceeded after it.
   BuildReport Build(const BuildOptions& options = {});
 
-  // Starts building as Build does and returns at once; State().build says how it goes.  Of the
-  // options it reads the two lengths.
+  // Starts building as Build does and returns at once; State().build says how it goes.  It does not
+  // wait, and passes over the options of waiting.
   BuildStatus StartBuild(const BuildOptions& options = {});
 
   // Stops the running build; without one it has no effect.
@@ -156,6 +183,12 @@ class Session {
   // ...).
   Animation Animate(std::span<const Waypoint> path, const AnimateOptions& options = {}) const;
   Animation Animate(std::span<const Point> path, const AnimateOptions& options = {}) const;
+
+  // Pictures along such a path, at most 10,000; not paced.  The blend options are those of
+  // `animation`.
+  PictureStream RenderAnimation(std::span<const Waypoint> path,
+                                const AnimateOptions& animation = {},
+                                const RenderOptions& picture = {}) const;
 
   // Opens the stream that avatar servers live on, with this session bound to slot 0; see Player.
   // With `revision` it stays with that built pose space; else frames follow rebuilds.

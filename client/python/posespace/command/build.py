@@ -64,6 +64,14 @@ def add(commands: Commands) -> None:
         "--remove", metavar="ID", action="append", default=[], help="a drawing to take out"
     )
     parser.add_argument(
+        "--flip",
+        metavar="ID",
+        action="append",
+        default=[],
+        help="keep the mirror image of a drawing named here, as suggest proposes it; say so again "
+        "whenever the drawing is named",
+    )
+    parser.add_argument(
         "--foreground",
         choices=["alpha", "light", "dark"],
         help="which pixels are the drawing; by default those that are not transparent",
@@ -92,6 +100,12 @@ def add(commands: Commands) -> None:
 
 def run(client: Client, arguments: argparse.Namespace) -> None:
     files = drawing_files(arguments.drawings)
+    for shape_id in arguments.flip:
+        if shape_id not in files:
+            raise InvalidArgument(
+                f"--flip {shape_id}: name the drawing's file, too; the files given are of "
+                f"{', '.join(files)}"
+            )
     landmarks = read_landmarks(arguments.landmarks) if arguments.landmarks else None
     arguments.out.mkdir(parents=True, exist_ok=True)
     session, is_new = _session(client, arguments.session)
@@ -135,7 +149,8 @@ def _upload(
 ) -> None:
     for k, (shape_id, file) in enumerate(files.items()):
         progress.show(f"uploading {file.name}", k / len(files))
-        put_drawing(session, shape_id, file, arguments.foreground, arguments.threshold)
+        flip = shape_id in arguments.flip
+        put_drawing(session, shape_id, file, arguments.foreground, arguments.threshold, flip)
     for shape_id in arguments.remove:
         session.delete_shape(shape_id)
     state = session.state()

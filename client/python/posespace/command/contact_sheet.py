@@ -12,11 +12,11 @@ from PIL import Image, ImageDraw, ImageFont
 from posespace.results import Mesh, TexturePlacement
 from posespace.session import Session
 
-_CELL, _CAPTION, _GAP = 240, 22, 12  # pixels
+CELL, _CAPTION, _GAP = 240, 22, 12  # pixels
 _COLUMNS = 8
 _FINE = 2  # meshes are drawn so much larger and made smaller, for smooth lines
-_PAPER = (250, 248, 243, 255)
-_INK = (60, 60, 70, 255)
+PAPER = (250, 248, 243, 255)
+INK = (60, 60, 70, 255)
 _EDGE = (70, 90, 160, 255)
 _RIM = (200, 60, 50, 255)
 
@@ -34,9 +34,9 @@ def contact_sheet(session: Session, mesh: Mesh, on_cell: Callable[[float], objec
     drawn = len(cells)
     for caption, weights in between:
         on_cell(len(cells) / total)
-        pixels = session.render(weights=weights, size=(_CELL, _CELL))
+        pixels = session.render(weights=weights, size=(CELL, CELL))
         cells.append((caption, Image.fromarray(pixels)))
-    return _laid_out([cells[:drawn], cells[drawn:]])
+    return laid_out([cells[:drawn], cells[drawn:]])
 
 
 def _in_betweens(ids: list[str]) -> list[Between]:
@@ -54,15 +54,15 @@ def _in_betweens(ids: list[str]) -> list[Between]:
 
 
 def _mesh_over_drawing(texture: NDArray[np.uint8], mesh: Mesh, shape_id: str) -> Image.Image:
-    side = _CELL * _FINE
+    side = CELL * _FINE
     vertices = mesh.vertices[shape_id]
     low, extent = vertices.min(axis=0), np.ptp(vertices, axis=0)
     zoom = 0.94 * side / extent.max()
     origin = low - (side / zoom - extent) / 2  # of the cell, in drawing pixels
 
-    cell = Image.new("RGBA", (side, side), _PAPER)
+    cell = Image.new("RGBA", (side, side), PAPER)
     cell.alpha_composite(_pixels_in_cell(texture, mesh.textures[shape_id], origin, zoom, side))
-    cell = Image.blend(Image.new("RGBA", cell.size, _PAPER), cell, 0.5)
+    cell = Image.blend(Image.new("RGBA", cell.size, PAPER), cell, 0.5)
     draw = ImageDraw.Draw(cell)
     places = [(x, y) for x, y in ((vertices - origin) * zoom).tolist()]
     for a, b, c in mesh.triangles.tolist():
@@ -70,7 +70,7 @@ def _mesh_over_drawing(texture: NDArray[np.uint8], mesh: Mesh, shape_id: str) ->
     for loop in mesh.boundary:
         rim = [places[v] for v in loop.tolist()]
         draw.line([*rim, rim[0]], fill=_RIM, width=3)
-    return cell.resize((_CELL, _CELL), Image.Resampling.LANCZOS)
+    return cell.resize((CELL, CELL), Image.Resampling.LANCZOS)
 
 
 def _pixels_in_cell(
@@ -97,7 +97,7 @@ def _pixels_in_cell(
     ).convert("RGBA")
 
 
-def _laid_out(groups: list[list[tuple[str, Image.Image]]]) -> Image.Image:
+def laid_out(groups: list[list[tuple[str, Image.Image]]]) -> Image.Image:
     """Rows of captioned cells; each group begins a row."""
     rows = [
         group[first : first + _COLUMNS]
@@ -105,16 +105,16 @@ def _laid_out(groups: list[list[tuple[str, Image.Image]]]) -> Image.Image:
         for first in range(0, len(group), _COLUMNS)
     ]
     columns = max(len(row) for row in rows)
-    width = columns * (_CELL + _GAP) + _GAP
-    page = Image.new("RGBA", (width, len(rows) * (_CELL + _CAPTION + _GAP) + _GAP), _PAPER)
+    width = columns * (CELL + _GAP) + _GAP
+    page = Image.new("RGBA", (width, len(rows) * (CELL + _CAPTION + _GAP) + _GAP), PAPER)
     draw = ImageDraw.Draw(page)
     font = ImageFont.load_default(13)
     for r, row in enumerate(rows):
-        top = _GAP + r * (_CELL + _CAPTION + _GAP)
+        top = _GAP + r * (CELL + _CAPTION + _GAP)
         for c, (caption, cell) in enumerate(row):
-            left = _GAP + c * (_CELL + _GAP)
+            left = _GAP + c * (CELL + _GAP)
             page.alpha_composite(cell, (left, top))
-            while draw.textlength(caption, font=font) > _CELL:
+            while draw.textlength(caption, font=font) > CELL:
                 caption = caption[:-2] + "…"
-            draw.text((left + _CELL / 2, top + _CELL + 4), caption, _INK, font, anchor="ma")
+            draw.text((left + CELL / 2, top + CELL + 4), caption, INK, font, anchor="ma")
     return page.convert("RGB")

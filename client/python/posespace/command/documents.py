@@ -75,6 +75,7 @@ def session_document(session: Session) -> Document:
                 "size": shape.size,
                 "outline_points": [len(ring) for ring in shape.outline],
                 "holes_filled": shape.holes_filled,
+                "flipped": shape.flipped,
                 "confidence": confidence.get(shape.id),
                 "placement": state.placements.get(shape.id),
                 "warnings": shape.warnings,

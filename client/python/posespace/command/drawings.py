@@ -35,12 +35,18 @@ def drawing_files(names: Sequence[Path]) -> dict[str, Path]:
 
 
 def put_drawing(
-    session: Session, shape_id: str, file: Path, foreground: str | None, threshold: int | None
+    session: Session,
+    shape_id: str,
+    file: Path,
+    foreground: str | None,
+    threshold: int | None,
+    flip: bool = False,
 ) -> Shape:
     """Uploads a drawing in place of one of its id: a picture, an SVG document, or rings in JSON.
 
     Raises what Session.put_shape does, naming the file; OSError.
     """
+    kept: dict[str, Any] = {"replace": True, "flip": flip}
     options: dict[str, Any] = {}
     if foreground is not None:
         options["foreground"] = foreground
@@ -48,11 +54,11 @@ def put_drawing(
         options["threshold"] = threshold
     try:
         if file.suffix.lower() == RINGS:
-            return session.put_shape(shape_id, replace=True, **_rings(file))
+            return session.put_shape(shape_id, **kept, **_rings(file))
         source: dict[str, Any] = {"image": file}
         if file.suffix.lower() in VECTOR:
             source = {"svg": file}
-        return session.put_shape(shape_id, replace=True, **source, **options)
+        return session.put_shape(shape_id, **kept, **source, **options)
     except Error as error:
         advice = "; rename the file" if error.reason == "INVALID_ID" else ""
         said = str(error) if str(error).startswith(f"{file}:") else f"{file}: {error}"

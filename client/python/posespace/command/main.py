@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from posespace.command import animate, build, inspect, output, ping, pose, sessions
+from posespace.command import animate, build, inspect, output, ping, pose, sessions, suggest
 from posespace.command.parsers import Commands, add_common
 from posespace.command.service import service
 from posespace.errors import DeadlineExceeded, Error, Unavailable
@@ -47,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"posespace {version('posespace')}")
     add_common(parser, None)
     commands = Commands(parser.add_subparsers(metavar="COMMAND", required=True))
-    for group in (build, pose, animate, inspect, sessions, ping):
+    for group in (build, suggest, pose, animate, inspect, sessions, ping):
         group.add(commands)
     return parser
 
