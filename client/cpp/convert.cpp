@@ -260,6 +260,7 @@ BuildReport FromMessage(const v1::BuildReport& message) {
   report.steiner_vertices = message.steiner_vertices();
   report.min_angle = message.min_angle();
   report.levels = {message.levels().begin(), message.levels().end()};
+  report.steiner_by_level = {message.steiner_by_level().begin(), message.steiner_by_level().end()};
   report.seconds = {message.seconds().begin(), message.seconds().end()};
   report.confidence = {message.confidence().begin(), message.confidence().end()};
   report.warnings = {message.warnings().begin(), message.warnings().end()};

@@ -123,6 +123,7 @@ v1::StartBuildRequest BuildRequest(const std::string& session_id, const BuildOpt
   v1::BuildOptions& message = *request.mutable_options();
   if (options.tolerance) message.set_tolerance(*options.tolerance);
   if (options.target_edge_length) message.set_target_edge_length(*options.target_edge_length);
+  if (options.max_vertices) message.set_max_vertices(*options.max_vertices);
   if (options.align) message.set_align(*options.align);
   return request;
 }

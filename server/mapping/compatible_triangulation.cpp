@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/compatible_triangulation.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "geometry/polygon.h"
+#include "mapping/cut_triangulation.h"
 #include "mapping/decimation.h"
 #include "mapping/editable_mesh.h"
 #include "mapping/overlay_triangulation.h"
@@ -17,7 +20,8 @@
 namespace posespace {
 namespace {
 
-// Decimation takes most vertices out of an overlay: one this much larger than the limit is tried.
+// Decimation takes most vertices out of an overlay: larger ones than the limit are tried.
+constexpr std::int64_t kMaxOverlay = 32'000;
 constexpr std::int64_t kMaxDecimation = 4;
 
 std::string Name(std::size_t drawing) { return "drawing " + std::to_string(drawing); }
@@ -53,8 +57,8 @@ Result<void> Check(std::span<const Points> outlines, std::span<const int> landma
   }
   if (n > options.max_vertices) {
     return Error{ErrorCode::kMeshTooLarge,
-                 "the outlines have " + std::to_string(n) + " rows; the limit is " +
-                     std::to_string(options.max_vertices) + " vertices",
+                 "the outlines have " + std::to_string(n) + " vertices; the limit is " +
+                     std::to_string(options.max_vertices) + "; a larger tolerance leaves fewer",
                  {}};
   }
   for (std::size_t s = 0; s < outlines.size(); ++s) {
@@ -89,28 +93,80 @@ CompatibleMesh MeshWithoutSteiner(std::span<const Points> outlines,
   return mesh;
 }
 
-Result<Triangulation> OverlayAndDecimate(std::span<const Points> outlines,
-                                         const TriangulationOptions& options, Progress* progress) {
-  const int n = static_cast<int>(outlines[0].rows());
-  Triangulation result;
-  result.used_overlay = true;
-  const std::int64_t max_overlay = kMaxDecimation * options.max_vertices;
-  result.mesh = TRY(TriangulateByOverlay(outlines, max_overlay, options.seed, progress));
-  result.overlay_vertices = result.mesh.num_vertices() - n;
-  Report(progress, 0.6);
-  EditableMesh editable(result.mesh);
+// A mesh of Steiner vertices from [n, ..) on, with the level that each comes from.
+Triangulation Decimated(const CompatibleMesh& mesh, std::span<const Level> origin,
+                        Progress* progress) {
+  const int n = mesh.num_vertices() - static_cast<int>(origin.size());
+  EditableMesh editable(mesh);
   Decimate(editable, progress);
+  Triangulation result;
   result.mesh = editable.Finish();
-  if (result.mesh.num_vertices() > options.max_vertices) {
+  result.before_decimation = static_cast<int>(origin.size());
+  result.steiner_vertices = result.mesh.num_vertices() - n;
+  for (std::size_t v = 0; v < origin.size(); ++v) {
+    if (!editable.IsLive(n + static_cast<int>(v))) continue;
+    ++result.levels[static_cast<std::size_t>(origin[v])].steiner_vertices;
+  }
+  return result;
+}
+
+Result<Triangulation> CutAndDecimate(std::span<const Points> outlines, std::int64_t max_vertices,
+                                     std::uint64_t seed, Progress* progress) {
+  const CutTriangulation cut = TRY(TriangulateByCuts(outlines, max_vertices, seed, progress));
+  Triangulation result = Decimated(cut.mesh, cut.origin, progress);
+  for (std::size_t level = 0; level < kNumLevels; ++level) {
+    result.levels[level].parts = cut.parts[level];
+  }
+  return result;
+}
+
+Result<Triangulation> OverlayAndDecimate(std::span<const Points> outlines,
+                                         std::int64_t max_vertices, std::uint64_t seed,
+                                         Progress* progress) {
+  const CompatibleMesh overlay =
+      TRY(TriangulateByOverlay(outlines, max_vertices, seed, progress)).mesh;
+  const std::vector<Level> origin(overlay.num_vertices() - outlines[0].rows(), Level::kOverlay);
+  Triangulation result = Decimated(overlay, origin, progress);
+  result.levels[static_cast<std::size_t>(Level::kOverlay)].parts = 1;
+  return result;
+}
+
+// Slivers first: they are worse than Steiner vertices, where those do away with them.
+bool IsBetter(const Triangulation& a, const Triangulation& b) {
+  const double sharpness_a = SharpestOf(a.mesh), sharpness_b = SharpestOf(b.mesh);
+  const bool sliver_a = sharpness_a > kSliverSharpness, sliver_b = sharpness_b > kSliverSharpness;
+  if (sliver_a != sliver_b) return sliver_b;
+  if (!sliver_a && a.steiner_vertices != b.steiner_vertices) {
+    return a.steiner_vertices < b.steiner_vertices;
+  }
+  return sharpness_a < sharpness_b;
+}
+
+// The best of the ways that need Steiner vertices.
+Result<Triangulation> WithSteiner(std::span<const Points> outlines, bool may_cut,
+                                  const TriangulationOptions& options, Progress* progress) {
+  const std::int64_t max_vertices = std::max(kMaxOverlay, kMaxDecimation * options.max_vertices);
+  std::optional<Triangulation> best;
+  if (may_cut) {
+    auto cut = CutAndDecimate(outlines, max_vertices, options.seed, progress);
+    if (cut) best = std::move(*cut);
+    Report(progress, 0.6);
+  }
+  // One Steiner vertex is the least where one is needed.
+  if (!best || best->steiner_vertices > 1 || SharpestOf(best->mesh) > kSliverSharpness) {
+    auto overlaid = OverlayAndDecimate(outlines, max_vertices, options.seed, progress);
+    if (!overlaid && !best) return std::move(overlaid).error();
+    if (overlaid && (!best || IsBetter(*overlaid, *best))) best = std::move(*overlaid);
+  }
+  if (best->mesh.num_vertices() > options.max_vertices) {
     return Error{ErrorCode::kMeshTooLarge,
                  "the outlines have so little in common that a mesh of all " +
                      std::to_string(outlines.size()) + " takes " +
-                     std::to_string(result.mesh.num_vertices()) + " vertices; the limit is " +
+                     std::to_string(best->mesh.num_vertices()) + " vertices; the limit is " +
                      std::to_string(options.max_vertices),
                  {}};
   }
-  result.steiner_vertices = result.mesh.num_vertices() - n;
-  return result;
+  return std::move(*best);
 }
 
 }  // namespace
@@ -124,28 +180,27 @@ Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
   }
   const Error cancelled{ErrorCode::kCancelled, "triangulation was cancelled", {}};
 
-  Triangulation result;
+  std::optional<Triangulation> best;
   const auto triangles = TriangulateRings(outlines, {}, progress);
   if (IsCancelled(progress)) return cancelled;
   Report(progress, 0.3);
-  if (triangles) result.mesh = MeshWithoutSteiner(outlines, *triangles);
-
-  // Slivers without Steiner vertices are worse than Steiner vertices, where those do away with
-  // them.
-  if (!triangles || SharpestOf(result.mesh) > kSliverSharpness) {
-    auto overlaid = OverlayAndDecimate(outlines, options, progress);
-    if (IsCancelled(progress)) return cancelled;
-    if (!overlaid && !triangles) return std::move(overlaid).error();
-    if (overlaid && (!triangles || SharpestOf(overlaid->mesh) < SharpestOf(result.mesh))) {
-      result = std::move(*overlaid);
-    }
+  if (triangles) {
+    best.emplace().mesh = MeshWithoutSteiner(outlines, *triangles);
+    best->levels[static_cast<std::size_t>(Level::kZeroSteiner)].parts = 1;
   }
+  if (!best || SharpestOf(best->mesh) > kSliverSharpness) {
+    auto other = WithSteiner(outlines, !best, options, progress);
+    if (IsCancelled(progress)) return cancelled;
+    if (!other && !best) return std::move(other).error();
+    if (other && (!best || IsBetter(*other, *best))) best = std::move(*other);
+  }
+  Triangulation& result = *best;
   result.mesh.landmarks.assign(landmark_rows.begin(), landmark_rows.end());
   if (FindDefect(result.mesh)) {
     return Error{ErrorCode::kInternal, "the triangulation folds over", {}};
   }
   Report(progress, 1.0);
-  return result;
+  return std::move(result);
 }
 
 }  // namespace posespace

@@ -9,18 +9,20 @@
 #include "geometry/mesh.h"
 #include "geometry/progress.h"
 #include "geometry/result.h"
+#include "mapping/triangulation_levels.h"
 
 namespace posespace {
 
 struct TriangulationOptions {
-  int max_vertices = 8000;  // more than this, or an overlay of 4 times it, fails with kMeshTooLarge
-  std::uint64_t seed = 1;   // of the overlay's circle angles; any seed gives a valid mesh
+  // More than this fails with kMeshTooLarge, and so does an overlay of 4 times it, or of 32,000.
+  int max_vertices = 8000;
+  std::uint64_t seed = 1;  // of the overlay's circle angles; any seed gives a valid mesh
 };
 
 struct Triangulation {
   CompatibleMesh mesh;
-  bool used_overlay = false;  // false: no Steiner vertex was needed
-  int overlay_vertices = 0;   // Steiner vertices before decimation
+  LevelCounts levels;         // which level solved how many parts
+  int before_decimation = 0;  // Steiner vertices before decimation
   int steiner_vertices = 0;   // Steiner vertices in the mesh
 };
 
@@ -30,8 +32,10 @@ struct Triangulation {
 // pose are its outline, in order and unmoved; Steiner vertices follow.  Every triangle is positive
 // in every pose, decided by an exact predicate: no pose folds over.  It always ends with a valid
 // mesh: first a dynamic programme that finds the triangulation without Steiner vertices whose
-// smallest angle is largest, if there is one; otherwise each outline's own triangulation is laid
-// over the others in a circle, which any N outlines allow, and the overlay is decimated.
+// smallest angle is largest, if there is one.  Otherwise the outlines are cut in parts that have
+// one (cut_triangulation.h, the paper's stages), and each outline's own triangulation is laid over
+// the others in a circle, which any N outlines allow (overlay_triangulation.h).  Both are decimated
+// and the mesh of fewer Steiner vertices is taken, of equals that of the wider angles.
 // Equal input gives equal output.
 //
 // Requires  N >= 1 simple outlines of K >= 3 rows each, positively oriented.

@@ -70,7 +70,7 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
   result.mesh = std::move(*improved);
   report.outline_vertices = static_cast<int>(simplified->outlines[0].rows());
   report.steiner_vertices = triangulated->steiner_vertices;
-  report.used_overlay = triangulated->used_overlay;
+  report.levels = triangulated->levels;
   report.min_angle = MinAngle(result.mesh);
   report.confidence = std::move(matched->confidence);
   result.proposal = std::move(matched->proposal);

@@ -21,11 +21,11 @@ struct MappingOptions {
 };
 
 struct MappingReport {
-  int outline_vertices = 0;  // rows of the simplified outlines
-  int steiner_vertices = 0;  // added by triangulation, before refinement
-  bool used_overlay = false;
-  double min_angle = 0.0;                               // of the final mesh, radians
-  std::vector<double> confidence;                       // per drawing, as in MatchedOutlines
+  int outline_vertices = 0;        // rows of the simplified outlines
+  int steiner_vertices = 0;        // added by triangulation, before refinement
+  LevelCounts levels;              // which level of the triangulation solved how many parts
+  double min_angle = 0.0;          // of the final mesh, radians
+  std::vector<double> confidence;  // per drawing, as in MatchedOutlines
   std::vector<std::pair<std::string, double>> seconds;  // stage -> seconds, in order
   // Ghost loss before and after interior alignment: of all drawings together, then of each (N + 1
   // values).  Empty when there was none; MapShapes leaves them so.

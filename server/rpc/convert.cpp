@@ -184,6 +184,7 @@ BuildRequest BuildRequestFromProto(const v1::BuildOptions& options) {
   if (options.has_tolerance()) request.tolerance = options.tolerance();
   if (options.has_target_edge_length()) request.target_edge_length = options.target_edge_length();
   if (options.has_align()) request.align = options.align();
+  if (options.has_max_vertices()) request.max_vertices = options.max_vertices();
   return request;
 }
 
@@ -268,7 +269,12 @@ void ToProto(const BuildSummary& summary, v1::BuildReport* report) {
   report->set_outline_vertices(mapping.outline_vertices);
   report->set_steiner_vertices(mapping.steiner_vertices);
   report->set_min_angle(mapping.min_angle);
-  (*report->mutable_levels())[mapping.used_overlay ? "overlay" : "zero_steiner"] = 1;
+  for (std::size_t k = 0; k < kNumLevels; ++k) {
+    const LevelCount& level = mapping.levels[k];
+    if (level.parts == 0) continue;
+    (*report->mutable_levels())[kLevelNames[k]] = level.parts;
+    (*report->mutable_steiner_by_level())[kLevelNames[k]] = level.steiner_vertices;
+  }
   for (const auto& [stage, seconds] : mapping.seconds) {
     (*report->mutable_seconds())[stage] = seconds;
   }

@@ -21,9 +21,10 @@ namespace posespace {
 
 // What a build may vary; see BuildOptions in session_service.proto.
 struct BuildRequest {
-  double tolerance = 0.03;           // 0.001 .. 0.2
-  double target_edge_length = 0.08;  // 0.02 .. 1
-  bool align = true;                 // inner vertices to what is drawn there
+  double tolerance = 0.03;               // 0.001 .. 0.2
+  double target_edge_length = 0.08;      // 0.02 .. 1
+  bool align = true;                     // inner vertices to what is drawn there
+  std::optional<int> max_vertices = {};  // of the mesh, 3 .. Limits::max_mesh_vertices, the default
 };
 
 // What automatic matching would do with a session's drawings and marks.

@@ -14,14 +14,24 @@ Result<void> CheckRange(const std::string& field, double value, double least, do
   return Error{ErrorCode::kInvalidOption, message, {{field, message}}};
 }
 
+Result<void> CheckMaxVertices(int value, const Limits& limits) {
+  if (value >= 3 && value <= limits.max_mesh_vertices) return {};
+  const std::string field = "options.max_vertices";
+  const std::string message = field + " is " + std::to_string(value) + ", not 3 to " +
+                              std::to_string(limits.max_mesh_vertices);
+  return Error{ErrorCode::kInvalidOption, message, {{field, message}}};
+}
+
 Result<MappingOptions> OptionsOf(const BuildRequest& request, const Limits& limits) {
   TRY(CheckRange("options.tolerance", request.tolerance, 0.001, 0.2));
   TRY(CheckRange("options.target_edge_length", request.target_edge_length, 0.02, 1.0));
   MappingOptions options;
   options.simplification.tolerance = request.tolerance;
   options.improvement.target_edge_length = request.target_edge_length;
-  options.triangulation.max_vertices = limits.max_mesh_vertices;
-  options.improvement.max_vertices = limits.max_mesh_vertices;
+  const int max_vertices = request.max_vertices.value_or(limits.max_mesh_vertices);
+  TRY(CheckMaxVertices(max_vertices, limits));
+  options.triangulation.max_vertices = max_vertices;
+  options.improvement.max_vertices = max_vertices;
   return options;
 }
 

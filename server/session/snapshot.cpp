@@ -12,9 +12,9 @@ namespace {
 constexpr std::string_view kSessionKind = "sess";
 constexpr std::string_view kDrawingKind = "draw";
 constexpr std::string_view kPoseSpaceKind = "pose";
-constexpr int kSessionVersion = 1;
+constexpr int kSessionVersion = 2;
 constexpr int kDrawingVersion = 1;
-constexpr int kPoseSpaceVersion = 1;
+constexpr int kPoseSpaceVersion = 2;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Time = std::chrono::system_clock::time_point;
@@ -93,8 +93,10 @@ std::map<std::string, Point> ReadNamedPoints(ByteReader& in) {
 void Write(const MappingReport& report, ByteWriter& out) {
   out.Add(std::int64_t{report.outline_vertices})
       .Add(std::int64_t{report.steiner_vertices})
-      .Add(std::int64_t{report.used_overlay})
       .Add(report.min_angle);
+  for (const LevelCount& level : report.levels) {
+    out.Add(std::int64_t{level.parts}).Add(std::int64_t{level.steiner_vertices});
+  }
   out.AddEach(report.confidence, [&](double value) { out.Add(value); });
   out.AddEach(report.seconds, [&](const auto& stage) { out.Add(stage.first).Add(stage.second); });
   for (const auto* ghosts : {&report.ghosts_before, &report.ghosts_after}) {
@@ -106,8 +108,11 @@ MappingReport ReadMappingReport(ByteReader& in) {
   MappingReport report;
   report.outline_vertices = ReadInt(in);
   report.steiner_vertices = ReadInt(in);
-  report.used_overlay = in.Integer() != 0;
   report.min_angle = in.Real();
+  for (LevelCount& level : report.levels) {
+    level.parts = ReadInt(in);
+    level.steiner_vertices = ReadInt(in);
+  }
   in.ReadEach([&] { report.confidence.push_back(in.Real()); });
   in.ReadEach([&] {
     std::string stage = in.Text();

@@ -18,6 +18,7 @@ from synthetic_drawings import WALK, figure, png_of, star
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = {
     "report.levels",
+    "report.steiner_by_level",
     "report.seconds",
     "report.confidence",
     "report.ghost_loss",

@@ -280,7 +280,14 @@ def test_a_build_without_drawings(session):
 
 @pytest.mark.parametrize(
     "option",
-    [{"tolerance": 0.0}, {"tolerance": NAN}, {"tolerance": 0.3}, {"target_edge_length": 0.001}],
+    [
+        {"tolerance": 0.0},
+        {"tolerance": NAN},
+        {"tolerance": 0.3},
+        {"target_edge_length": 0.001},
+        {"max_vertices": 2},
+        {"max_vertices": 8001},
+    ],
 )
 def test_build_options_out_of_range(two_stars, option):
     with refused(posespace.InvalidArgument, "INVALID_OPTION", *option):
@@ -521,6 +528,7 @@ def test_a_refused_picture_is_named_by_its_path(session):
         (["placements['no']"], lambda s: s.set_placements({"no": (0, 0)})),
         (["options.tolerance"], lambda s: s.build(tolerance=0.3)),
         (["options.target_edge_length"], lambda s: s.build(target_edge_length=0.0)),
+        (["options.max_vertices"], lambda s: s.build(max_vertices=0)),
     ],
 )
 def test_a_field_at_fault_is_named_by_its_path_in_the_request(two_stars, fields, call):

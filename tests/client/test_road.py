@@ -121,6 +121,23 @@ def test_a_finer_mesh_is_built_on_request(session):
     assert fine.revision != coarse.revision
 
 
+def test_a_mesh_keeps_to_its_budget_of_vertices_or_is_refused(session):
+    session.put_shape("star", polygon=star())
+    free = session.build(target_edge_length=0.05)
+    for budget in (free.vertices // 2, free.outline_vertices):
+        assert session.build(target_edge_length=0.05, max_vertices=budget).vertices <= budget
+    with pytest.raises(posespace.InvalidArgument, match="tolerance") as refusal:
+        session.build(max_vertices=free.outline_vertices - 1)
+    assert refusal.value.reason == "MESH_TOO_LARGE"
+
+
+def test_the_report_says_what_each_level_of_the_triangulation_did(session):
+    session.put_shape("one", polygon=[(0, 0), (40, 0), (40, 40), (30, 10)])
+    report = session.build()
+    assert report.levels == {"zero_steiner": 1}
+    assert report.steiner_by_level == {"zero_steiner": 0}
+
+
 def test_alignment_is_on_unless_switched_off_and_reports_its_gain(session):
     for name, pose in WALK.items():
         session.put_shape(name, image=figure(**pose))

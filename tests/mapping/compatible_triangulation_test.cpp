@@ -16,6 +16,10 @@
 namespace posespace {
 namespace {
 
+int PartsOf(const Triangulation& triangulation, Level level) {
+  return triangulation.levels[static_cast<std::size_t>(level)].parts;
+}
+
 // Rows [0, K) of each pose are its outline and the boundary loop; the rest counts as Steiner.
 void ExpectTriangulates(const Result<Triangulation>& result, const std::vector<Points>& outlines) {
   ASSERT_THAT(result, Succeeds());
@@ -29,8 +33,16 @@ void ExpectTriangulates(const Result<Triangulation>& result, const std::vector<P
   std::iota(rows.begin(), rows.end(), 0);
   EXPECT_EQ(mesh.boundary, std::vector<std::vector<int>>{rows});
   EXPECT_EQ(result->steiner_vertices, mesh.num_vertices() - n);
-  EXPECT_LE(result->steiner_vertices, result->overlay_vertices);
-  EXPECT_TRUE(result->used_overlay || result->steiner_vertices == 0);
+  EXPECT_LE(result->steiner_vertices, result->before_decimation);
+  int parts = 0, steiner = 0;
+  for (const LevelCount& level : result->levels) {
+    parts += level.parts;
+    steiner += level.steiner_vertices;
+    EXPECT_TRUE(level.parts > 0 || level.steiner_vertices == 0);
+  }
+  EXPECT_GE(parts, 1);
+  EXPECT_EQ(steiner, result->steiner_vertices);
+  EXPECT_TRUE(parts > PartsOf(*result, Level::kZeroSteiner) || result->steiner_vertices == 0);
   EXPECT_THAT(mesh, IsACompatibleDisc());
 }
 
@@ -52,7 +64,8 @@ TEST_P(TriangulateFamily, NeedsNoSteinerVertexForCopiesOfOneOutline) {
     const std::vector<Points> outlines = {outline, 2.0 * outline, 0.5 * outline};
     const auto result = TriangulateCompatibly(outlines, {});
     ExpectTriangulates(result, outlines);
-    EXPECT_FALSE(result->used_overlay);
+    EXPECT_EQ(PartsOf(*result, Level::kZeroSteiner), 1);
+    EXPECT_EQ(result->before_decimation, 0);
   }
 }
 
@@ -100,7 +113,7 @@ TEST(TriangulateCompatibly, EqualInputGivesEqualOutput) {
   const auto first = TriangulateCompatibly(outlines, {}),
              second = TriangulateCompatibly(outlines, {});
   ASSERT_THAT(first, Succeeds());
-  EXPECT_TRUE(first->used_overlay);
+  EXPECT_GT(first->steiner_vertices, 0);
   EXPECT_EQ(first->mesh.triangles, second->mesh.triangles);
   EXPECT_EQ(first->mesh.poses, second->mesh.poses);
 }
@@ -158,14 +171,14 @@ TEST(TriangulateCompatibly, NamesTheDrawingAndEdgesOfAnOutlineThatIsNotSimple) {
 }
 
 TEST(TriangulateCompatibly, RefusesAMeshOfMoreVerticesThanAllowed) {
-  const auto outlines = DrawOutlines(OutlineFamilies()[0], 2, 4, 40);
+  const auto outlines = DrawOutlines(OutlineFamilies()[1], 0, 3, 30);
   const auto enough = TriangulateCompatibly(outlines, {});
   ASSERT_THAT(enough, Succeeds());
   TriangulationOptions options;
   options.max_vertices = enough->mesh.num_vertices();
-  ASSERT_GT(enough->overlay_vertices, options.max_vertices);
+  ASSERT_GT(enough->before_decimation, options.max_vertices);
   EXPECT_THAT(TriangulateCompatibly(outlines, {}, options), Succeeds());
-  for (const int limit : {options.max_vertices - 1, 40, 39}) {
+  for (const int limit : {options.max_vertices - 1, 30, 29}) {
     options.max_vertices = limit;
     EXPECT_THAT(TriangulateCompatibly(outlines, {}, options),
                 FailsSaying(ErrorCode::kMeshTooLarge, "limit is"));

@@ -114,13 +114,16 @@ TEST(BuildOptions, AreTheDefaultsWhereAbsent) {
   EXPECT_EQ(BuildRequestFromProto({}).tolerance, 0.03);
   EXPECT_EQ(BuildRequestFromProto({}).target_edge_length, 0.08);
   EXPECT_TRUE(BuildRequestFromProto({}).align);
+  EXPECT_EQ(BuildRequestFromProto({}).max_vertices, std::nullopt);
   v1::BuildOptions options;
   options.set_tolerance(0.05);
   options.set_target_edge_length(0.5);
   options.set_align(false);
+  options.set_max_vertices(100);
   EXPECT_EQ(BuildRequestFromProto(options).tolerance, 0.05);
   EXPECT_EQ(BuildRequestFromProto(options).target_edge_length, 0.5);
   EXPECT_FALSE(BuildRequestFromProto(options).align);
+  EXPECT_EQ(BuildRequestFromProto(options).max_vertices, 100);
 }
 
 TEST(SessionView, TravelsWhole) {

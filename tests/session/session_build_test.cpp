@@ -90,6 +90,13 @@ TEST_F(SessionBuild, ChecksItsOptionsOnBothSides) {
     EXPECT_THAT(session_.StartBuild({0.03, length}, idle_),
                 FailsWith(ErrorCode::kInvalidOption, "options.target_edge_length"));
   }
+  for (const int vertices : {3, Limits().max_mesh_vertices}) {
+    EXPECT_THAT(session_.StartBuild({.max_vertices = vertices}, idle_), Succeeds());
+  }
+  for (const int vertices : {-1, 0, 2, Limits().max_mesh_vertices + 1}) {
+    EXPECT_THAT(session_.StartBuild({.max_vertices = vertices}, idle_),
+                FailsWith(ErrorCode::kInvalidOption, "options.max_vertices"));
+  }
 }
 
 TEST_F(SessionBuild, AttachesToTheRunningBuildOfTheSameInputs) {

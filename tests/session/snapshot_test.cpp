@@ -67,7 +67,7 @@ SessionRecord SampleRecord() {
   built.shape_ids = {"walk", "jump"};
   built.mapping.outline_vertices = 9;
   built.mapping.steiner_vertices = 1;
-  built.mapping.used_overlay = true;
+  built.mapping.levels = {{{2, 0}, {1, 0}, {1, 1}, {0, 0}, {0, 0}}};
   built.mapping.min_angle = 0.25;
   built.mapping.confidence = {0.5, 1};
   built.mapping.seconds = {{"matching", 0.5}, {"weights", 0.25}};

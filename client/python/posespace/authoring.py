@@ -230,6 +230,7 @@ class Authoring:
         *,
         tolerance: float | None = None,
         target_edge_length: float | None = None,
+        max_vertices: int | None = None,
         align: bool | None = None,
         on_progress: OnProgress | None = None,
         timeout: float | None = None,
@@ -241,6 +242,8 @@ class Authoring:
         tolerance           Farthest the mesh outline may lie from the drawing's, relative to the
                             square root of its area, 0.001 to 0.2; 0.03 by default.
         target_edge_length  Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
+        max_vertices        Of the mesh, 3 to what the service allows (8,000 unless it was started
+                            with another limit), which is the default: refinement stops there.
         align               Whether inner vertices move so that what is drawn inside corresponds,
                             eyes to eyes; report.ghost_loss says what it gained.  True by default.
         on_progress         Called with the stage's name and the fraction done, which never falls.
@@ -253,10 +256,11 @@ class Authoring:
         timeout.
 
         Raises NotBuilt (NO_SHAPES) without drawings, InvalidArgument when drawings or marks
-        contradict each other, Cancelled when somebody cancels or replaces the build,
-        ResourceExhausted when the queue stays full for `timeout`, DeadlineExceeded after it.
+        contradict each other or drawings do not fit into `max_vertices`, Cancelled when somebody
+        cancels or replaces the build, ResourceExhausted when the queue stays full for `timeout`,
+        DeadlineExceeded after it.
         """
-        request = self._build_request(tolerance, target_edge_length, align)
+        request = self._build_request(tolerance, target_edge_length, max_vertices, align)
         return build_and_wait(self._channel, request, on_progress, timeout)
 
     def start_build(
@@ -264,10 +268,11 @@ class Authoring:
         *,
         tolerance: float | None = None,
         target_edge_length: float | None = None,
+        max_vertices: int | None = None,
         align: bool | None = None,
     ) -> Build:
         """Starts building as `build` does and returns at once; `state().build` says how it goes."""
-        request = self._build_request(tolerance, target_edge_length, align)
+        request = self._build_request(tolerance, target_edge_length, max_vertices, align)
         return messages.build(self._channel.call(self._channel.sessions.StartBuild, request).build)
 
     def cancel_build(self) -> None:
@@ -278,12 +283,17 @@ class Authoring:
         )
 
     def _build_request(
-        self, tolerance: float | None, target_edge_length: float | None, align: bool | None
+        self,
+        tolerance: float | None,
+        target_edge_length: float | None,
+        max_vertices: int | None,
+        align: bool | None,
     ) -> session_service_pb2.StartBuildRequest:
         options = messages.make(
             session_service_pb2.BuildOptions,
             tolerance=tolerance,
             target_edge_length=target_edge_length,
+            max_vertices=max_vertices,
             align=align,
         )
         return session_service_pb2.StartBuildRequest(session_id=self._id, options=options)

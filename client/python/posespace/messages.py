@@ -255,6 +255,7 @@ def report(message: geometry_pb2.BuildReport) -> results.BuildReport:
         steiner_vertices=message.steiner_vertices,
         min_angle=message.min_angle,
         levels=dict(message.levels),
+        steiner_by_level=dict(message.steiner_by_level),
         seconds=dict(message.seconds),
         confidence=dict(message.confidence),
         warnings=list(message.warnings),

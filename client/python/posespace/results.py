@@ -85,7 +85,10 @@ class BuildReport:
     vertices, triangles, outline_vertices, steiner_vertices
                       Sizes of the mesh; the latter two before refinement.
     min_angle         Smallest angle over all triangles and drawings, radians.
-    levels            How many parts each level of the triangulation solved.
+    levels            How many parts of the drawings each level of the triangulation dealt with:
+                      "zero_steiner" triangulates one as it is, "straight_cut", "one_point_cut" and
+                      "link_path_cut" cut one in two, "overlay" triangulates any.
+    steiner_by_level  How many of the Steiner vertices come from each of them.
     seconds           By stage.
     confidence        By drawing: how clear the automatic matching was, in (0, 1].
     warnings          What a person should know, such as drawings to check.
@@ -101,6 +104,7 @@ class BuildReport:
     steiner_vertices: int
     min_angle: float
     levels: dict[str, int]
+    steiner_by_level: dict[str, int]
     seconds: dict[str, float]
     confidence: dict[str, float]
     warnings: list[str]

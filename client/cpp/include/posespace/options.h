@@ -127,6 +127,9 @@ struct BuildOptions {
   std::optional<double> tolerance = {};
   // Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
   std::optional<double> target_edge_length = {};
+  // Most vertices of the mesh, 3 to what the service allows (8,000 unless set otherwise), which is
+  // the default: refinement stops there.  Drawings that need more even so are refused.
+  std::optional<int> max_vertices = {};
   // Moves inner vertices so that what is drawn inside corresponds, eyes to eyes; by default true.
   std::optional<bool> align = {};
   // Called by the thread that waits, with the stage's name and the fraction done, which never

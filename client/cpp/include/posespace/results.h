@@ -51,11 +51,15 @@ struct BuildReport {
   std::string revision;  // the built pose space
   int vertices = 0;
   int triangles = 0;
-  int outline_vertices = 0;               // before refinement
-  int steiner_vertices = 0;               // before refinement
-  double min_angle = 0.0;                 // smallest over all triangles and drawings, radians
-  std::map<std::string, int> levels;      // how many parts each level of the triangulation solved
-  std::map<std::string, double> seconds;  // by stage
+  int outline_vertices = 0;  // before refinement
+  int steiner_vertices = 0;  // before refinement
+  double min_angle = 0.0;    // smallest over all triangles and drawings, radians
+  // How many parts of the drawings each level of the triangulation dealt with, and how many of the
+  // Steiner vertices come from it: "zero_steiner" triangulates a part as it is, "straight_cut",
+  // "one_point_cut" and "link_path_cut" cut one in two, "overlay" triangulates any.
+  std::map<std::string, int> levels;
+  std::map<std::string, int> steiner_by_level;
+  std::map<std::string, double> seconds;     // by stage
   std::map<std::string, double> confidence;  // by drawing: how clear its matching was, in (0, 1]
   std::vector<std::string> warnings;         // what a person should know
   // Of all drawings mixed; none when alignment was switched off or had nothing to do.

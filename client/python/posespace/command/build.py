@@ -92,6 +92,9 @@ def add(commands: Commands) -> None:
         help="length of mesh edges, / size of the drawing; default 0.08",
     )
     parser.add_argument(
+        "--max-vertices", metavar="N", type=int, help="most vertices of the mesh; default 8000"
+    )
+    parser.add_argument(
         "--no-align",
         action="store_true",
         help="leave inner vertices where they are, instead of moving them to what is drawn there",
@@ -116,6 +119,7 @@ def run(client: Client, arguments: argparse.Namespace) -> None:
             session.build(
                 tolerance=arguments.tolerance,
                 target_edge_length=arguments.target_edge_length,
+                max_vertices=arguments.max_vertices,
                 align=False if arguments.no_align else None,
                 on_progress=progress.show,
             )
