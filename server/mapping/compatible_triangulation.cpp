@@ -93,6 +93,30 @@ CompatibleMesh MeshWithoutSteiner(std::span<const Points> outlines,
   return mesh;
 }
 
+// An outline moved so that its first row is the origin, where doubles lie densest; as it is when
+// that would round a coordinate.
+Points NearOrigin(const Points& outline) {
+  const Eigen::RowVector2d first = outline.row(0);
+  Points moved = outline;
+  moved.rowwise() -= first;
+  for (Eigen::Index k = 0; k < outline.size(); ++k) {
+    const double given = outline.data()[k], by = first[k % 2], now = moved.data()[k];
+    // Exact if and only if both hold (Knuth's two-sum has no error term).
+    if (now + by != given || given - now != by) return outline;
+  }
+  return moved;
+}
+
+// The mesh with its outlines at their own places again.
+void MoveBack(std::span<const Points> outlines, CompatibleMesh& mesh) {
+  for (std::size_t s = 0; s < outlines.size(); ++s) {
+    Points& pose = mesh.poses[s];
+    const Eigen::RowVector2d by = outlines[s].row(0) - pose.row(0);
+    pose.rowwise() += by;
+    pose.topRows(outlines[s].rows()) = outlines[s];
+  }
+}
+
 // A mesh of Steiner vertices from [n, ..) on, with the level that each comes from.
 Triangulation Decimated(const CompatibleMesh& mesh, std::span<const Level> origin,
                         Progress* progress) {
@@ -152,12 +176,9 @@ Result<Triangulation> WithSteiner(std::span<const Points> outlines, bool may_cut
     if (cut) best = std::move(*cut);
     Report(progress, 0.6);
   }
-  // One Steiner vertex is the least where one is needed.
-  if (!best || best->steiner_vertices > 1 || SharpestOf(best->mesh) > kSliverSharpness) {
-    auto overlaid = OverlayAndDecimate(outlines, max_vertices, options.seed, progress);
-    if (!overlaid && !best) return std::move(overlaid).error();
-    if (overlaid && (!best || IsBetter(*overlaid, *best))) best = std::move(*overlaid);
-  }
+  auto overlaid = OverlayAndDecimate(outlines, max_vertices, options.seed, progress);
+  if (!overlaid && !best) return std::move(overlaid).error();
+  if (overlaid && (!best || IsBetter(*overlaid, *best))) best = std::move(*overlaid);
   if (best->mesh.num_vertices() > options.max_vertices) {
     return Error{ErrorCode::kMeshTooLarge,
                  "the outlines have so little in common that a mesh of all " +
@@ -167,6 +188,23 @@ Result<Triangulation> WithSteiner(std::span<const Points> outlines, bool may_cut
                  {}};
   }
   return std::move(*best);
+}
+
+// The same, worked out where vertices have the most room; only the few that are left after
+// decimation are rounded to the outlines' own places.
+Result<Triangulation> WithSteinerNearOrigin(std::span<const Points> outlines, bool may_cut,
+                                            const TriangulationOptions& options,
+                                            Progress* progress) {
+  std::vector<Points> moved;
+  for (const Points& outline : outlines) moved.push_back(NearOrigin(outline));
+  Triangulation result = TRY(WithSteiner(moved, may_cut, options, progress));
+  MoveBack(outlines, result.mesh);
+  if (FindDefect(result.mesh)) {
+    return Error{ErrorCode::kInternal,
+                 "the outlines are too thin somewhere for a mesh in double precision",
+                 {}};
+  }
+  return result;
 }
 
 }  // namespace
@@ -189,7 +227,7 @@ Result<Triangulation> TriangulateCompatibly(std::span<const Points> outlines,
     best->levels[static_cast<std::size_t>(Level::kZeroSteiner)].parts = 1;
   }
   if (!best || SharpestOf(best->mesh) > kSliverSharpness) {
-    auto other = WithSteiner(outlines, !best, options, progress);
+    auto other = WithSteinerNearOrigin(outlines, !best, options, progress);
     if (IsCancelled(progress)) return cancelled;
     if (!other && !best) return std::move(other).error();
     if (other && (!best || IsBetter(*other, *best))) best = std::move(*other);

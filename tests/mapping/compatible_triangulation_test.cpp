@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "tests/mapping/compatible_mesh_check.h"
@@ -128,6 +129,25 @@ TEST(TriangulateCompatibly, TakesOneTriangleAsItIs) {
   const auto result = TriangulateCompatibly(std::vector{PointsOf("0 0, 4 0, 0 3")}, {});
   ASSERT_THAT(result, Succeeds());
   EXPECT_EQ(result->mesh.num_triangles(), 1);
+}
+
+// A published triangulator of two polygons does not end on a bat and a star.
+TEST(TriangulateCompatibly, EndsOnABatAndAStarFromEveryStart) {
+  const Points bat = PointsOf(
+      "0 40, 12 14, 30 4, 44 10, 47 2, 50 8, 53 2, 56 10, 70 4, 88 14, 100 40, 90 33, 82 46, 74 36,"
+      " 66 52, 58 40, 50 66, 42 40, 34 52, 26 36, 18 46, 10 33");
+  const int n = static_cast<int>(bat.rows());
+  for (int start = 0; start < n; ++start) {
+    SCOPED_TRACE(testing::Message() << "start " << start);
+    Points star(n, 2);
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (k + start) / n;
+      star.row(k) = ((k + start) % 2 == 0 ? 50.0 : 18.0) *
+                    Eigen::RowVector2d(std::sin(angle), -std::cos(angle));
+    }
+    const std::vector<Points> outlines = {bat, star};
+    ExpectTriangulates(TriangulateCompatibly(outlines, {}), outlines);
+  }
 }
 
 // Two chevrons: each has one diagonal only, and they are not the same.
