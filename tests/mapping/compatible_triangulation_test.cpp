@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "geometry/polygon.h"
+#include "mapping/overlay_triangulation.h"
 #include "tests/mapping/compatible_mesh_check.h"
 #include "tests/mapping/outline_families.h"
 #include "tests/support/fails_saying.h"
@@ -211,6 +213,31 @@ TEST(TriangulateCompatibly, RefusesRatherThanFoldOverWhereNoDoubleFits) {
   std::vector<Points> outlines = {PointsOf("0 0, 4 0, 4 4, 3 1"), PointsOf("3 1, 0 0, 4 0, 4 4")};
   for (Points& outline : outlines) outline = (4.0 * outline.array() + 0x1p54).matrix();
   EXPECT_THAT(TriangulateCompatibly(outlines, {}), FailsSaying(ErrorCode::kInternal, "too thin"));
+}
+
+// Coordinates of the size of 2^52 are 1 apart.
+TEST(TriangulateCompatibly, FindsRoomFarFromTheOriginWhereAnOverlayFindsNone) {
+  int refused = 0, overlays_refused = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::vector<Points> outlines = DrawOutlines(OutlineFamilies()[1], seed, 2, 14);
+    bool usable = true;
+    for (Points& outline : outlines) {
+      outline = ((outline.array() * 160.0).round() + 0x1p52).matrix();
+      usable = usable && IsSimple(outline) && SignedArea(outline) > 0.0;
+    }
+    if (!usable) continue;
+    overlays_refused += TriangulateByOverlay(outlines, 100'000, 1, nullptr) ? 0 : 1;
+    const auto result = TriangulateCompatibly(outlines, {});
+    if (result) {
+      ExpectTriangulates(result, outlines);
+    } else {
+      EXPECT_THAT(result, FailsSaying(ErrorCode::kInternal, "too thin"));
+      ++refused;
+    }
+  }
+  EXPECT_GT(overlays_refused, 0);
+  EXPECT_LT(2 * refused, overlays_refused);
 }
 
 TEST(TriangulateCompatibly, StopsWhenCancelled) {
