@@ -32,7 +32,7 @@ class Enclosure:
     """How mesh outlines lie about the drawings' outlines, in square roots of a drawing's area; of
     the worst drawing."""
 
-    protrusion: float  # how far the drawing's outline is outside the mesh's
+    protrusion: float  # how far the outlines pass each other where they should not
     distance: float  # Hausdorff
 
     @property
@@ -66,13 +66,13 @@ def matching_errors(session: posespace.Session, places: dict[str, Points]) -> Po
     for i, (a, ring) in enumerate(places.items()):
         before, after = edge_lengths(np.roll(ring, 1, axis=0)), edge_lengths(ring)
         for j, b in enumerate(places):
-            apart = _along(known[a], found[a], found[b]) - known[b]
+            apart = carried_along(known[a], found[a], found[b]) - known[b]
             apart = np.abs(apart - np.round(apart))
             errors[i, j] = np.average(apart, weights=before + after)
     return errors
 
 
-def _along(at: Points, start: Points, end: Points) -> Points:
+def carried_along(at: Points, start: Points, end: Points) -> Points:
     """Where a map of closed curves takes turns `at`: it takes start[m] to end[m], in order, and is
     linear in between."""
     order = np.argsort(start)

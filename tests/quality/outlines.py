@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
-_SPACING = 0.02  # of samples, of the square root of the ring's area
+_SPACING = 1 / 500  # of samples, of the perimeter
 
 
 def signed_area(ring: Points) -> float:
@@ -48,8 +48,8 @@ def distances(places: Points, ring: Points) -> Points:
 
 def sampled(ring: Points) -> Points:
     """The ring's rows, and places between them no farther apart than _SPACING."""
-    counts = np.ceil(edge_lengths(ring) / (_SPACING * abs(signed_area(ring)) ** 0.5)).astype(int)
-    counts = np.maximum(counts, 1)
+    lengths = edge_lengths(ring)
+    counts = np.maximum(np.ceil(lengths / (_SPACING * lengths.sum())).astype(int), 1)
     edge = np.repeat(np.arange(len(ring)), counts)
     share = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[edge]
     step = np.roll(ring, -1, axis=0) - ring
@@ -68,10 +68,13 @@ def inside(ring: Points, places: Points) -> NDArray[np.bool_]:
 
 
 def protrusion(outline: Points, rim: Points) -> float:
-    """How far the outline lies outside the rim, at its corners and along its edges."""
-    places = sampled(outline)
-    outside = places[~inside(rim, places)]
-    return float(distances(outside, rim).max(initial=0.0))
+    """How far corners of the outline lie outside the rim, or corners of the rim inside the outline:
+    0 exactly when the rim encloses the outline."""
+    outside = outline[~inside(rim, outline)]
+    within = rim[inside(outline, rim)]
+    return float(
+        max(distances(outside, rim).max(initial=0.0), distances(within, outline).max(initial=0.0))
+    )
 
 
 def farthest(a: Points, b: Points) -> float:

@@ -31,7 +31,7 @@ def test_rings_tell_inside_distance_and_place():
     assert distances(np.array([(2.0, 1.0), (7.0, 8.0)]), SQUARE).tolist() == [1.0, 5.0]
     assert turns_of(np.array([(4.0, 2.0), (0.0, 1.0)]), SQUARE).tolist() == [0.375, 0.9375]
     assert is_simple(SQUARE) and not is_simple(SQUARE[[0, 2, 1, 3]])
-    assert len(sampled(SQUARE)) == 200
+    assert len(sampled(SQUARE)) == 500
 
 
 def test_a_corner_outside_the_rim_is_seen_and_so_is_an_edge_across_a_notch():
@@ -40,7 +40,7 @@ def test_a_corner_outside_the_rim_is_seen_and_so_is_an_edge_across_a_notch():
     notch = [(1.0, -1.0), (2.0, 2.0), (3.0, -1.0)]
     notched = np.insert(1.5 * SQUARE - 1.0, 1, notch, axis=0)
     assert inside(notched, SQUARE).all()
-    assert protrusion(SQUARE, notched) == pytest.approx(2 / 10**0.5)
+    assert protrusion(SQUARE, notched) == pytest.approx(2.0)
     assert farthest(SQUARE, notched) == pytest.approx(2.0)
 
 
