@@ -20,6 +20,7 @@ static_assert(std::endian::native == std::endian::little, "vertices travel littl
 // Tags of fields, by wire type.
 constexpr std::uint32_t Varint(int number) { return static_cast<std::uint32_t>(number) << 3; }
 constexpr std::uint32_t Bytes(int number) { return Varint(number) | 2; }
+constexpr std::uint32_t Fixed32(int number) { return Varint(number) | 5; }
 
 enum class Field { kRead, kUnknown, kBroken };
 
@@ -50,19 +51,66 @@ Field ReadText(CodedInputStream* input, std::string* text) {
   return whole ? Field::kRead : Field::kBroken;
 }
 
+// Room for the item's vertices.
+float* AddVertices(std::size_t floats, FrameItems* items, FrameItems::Item* item) {
+  item->vertices_begin = items->floats;
+  item->vertices_end = items->floats += floats;
+  if (items->vertices.size() < items->floats) items->vertices.resize(items->floats);
+  return items->vertices.data() + item->vertices_begin;
+}
+
 Field ReadVertices(CodedInputStream* input, FrameItems* items, FrameItems::Item* item) {
   int bytes = 0;
   if (!input->ReadVarintSizeAsInt(&bytes) || bytes > input->BytesUntilLimit()) {
     return Field::kBroken;
   }
   const std::size_t floats = static_cast<std::size_t>(bytes) / sizeof(float);
-  item->vertices_begin = items->floats;
-  item->vertices_end = items->floats += floats;
-  if (items->vertices.size() < items->floats) items->vertices.resize(items->floats);
-  const bool whole = input->ReadRaw(items->vertices.data() + item->vertices_begin,
-                                    static_cast<int>(floats * sizeof(float))) &&
-                     input->Skip(bytes % static_cast<int>(sizeof(float)));
+  const bool whole =
+      input->ReadRaw(AddVertices(floats, items, item), static_cast<int>(floats * sizeof(float))) &&
+      input->Skip(bytes % static_cast<int>(sizeof(float)));
   return whole ? Field::kRead : Field::kBroken;
+}
+
+Field ReadSteps(CodedInputStream* input, FrameItems* items) {
+  int bytes = 0;
+  if (!input->ReadVarintSizeAsInt(&bytes) || bytes > input->BytesUntilLimit()) {
+    return Field::kBroken;
+  }
+  const std::size_t count = static_cast<std::size_t>(bytes) / sizeof(std::int16_t);
+  items->steps.resize(count);
+  const bool whole =
+      input->ReadRaw(items->steps.data(), static_cast<int>(count * sizeof(std::int16_t))) &&
+      input->Skip(bytes % static_cast<int>(sizeof(std::int16_t)));
+  return whole ? Field::kRead : Field::kBroken;
+}
+
+// Quantized vertices, as floats.
+Field ReadQuantized(CodedInputStream* input, FrameItems* items, FrameItems::Item* item) {
+  using Quantized = v1::QuantizedVertices;
+  float center[2] = {0.0f, 0.0f}, step = 0.0f;
+  items->steps.clear();
+  const auto read_float = [&](float* value) {
+    return ReadValue<float, Wire::TYPE_FLOAT>(input, value);
+  };
+  const Field read = ReadFields(input, [&](std::uint32_t tag) {
+    switch (tag) {
+      case Fixed32(Quantized::kCenterXFieldNumber):
+        return read_float(&center[0]);
+      case Fixed32(Quantized::kCenterYFieldNumber):
+        return read_float(&center[1]);
+      case Fixed32(Quantized::kStepFieldNumber):
+        return read_float(&step);
+      case Bytes(Quantized::kValuesFieldNumber):
+        return ReadSteps(input, items);
+      default:
+        return Field::kUnknown;
+    }
+  });
+  float* const vertices = AddVertices(items->steps.size(), items, item);
+  for (std::size_t k = 0; k < items->steps.size(); ++k) {
+    vertices[k] = center[k % 2] + step * static_cast<float>(items->steps[k]);
+  }
+  return read;
 }
 
 Field ReadNumbers(CodedInputStream* input, FrameItems* items, int* begin, int* end) {
@@ -85,6 +133,8 @@ Field ReadFrame(CodedInputStream* input, FrameItems* items, FrameItems::Item* it
         return ReadValue<std::int32_t, Wire::TYPE_INT32>(input, &item->folds);
       case Varint(v1::Frame::kMendedFieldNumber):
         return ReadValue<std::int32_t, Wire::TYPE_INT32>(input, &item->mended);
+      case Bytes(v1::Frame::kQuantizedFieldNumber):
+        return ReadQuantized(input, items, item);
       default:
         return Field::kUnknown;
     }

@@ -14,7 +14,7 @@ namespace posespace::internal {
 
 // The items of FrameResult messages, read into memory that is used again and again: protobuf itself
 // would free and allocate every item's frame for every message.  Frames lie one after another in
-// `vertices`, weights in `numbers`.
+// `vertices`, quantized ones as floats too, and weights in `numbers`.
 struct FrameItems {
   struct Item {
     std::uint32_t slot;
@@ -35,6 +35,7 @@ struct FrameItems {
   std::vector<float> vertices;  // the first `floats`
   std::size_t floats = 0;
   google::protobuf::RepeatedField<double> numbers;
+  std::vector<std::int16_t> steps;  // of the quantized vertices just read
 };
 
 enum class ReadOutcome { kFrameResult, kAnotherMessage, kBroken };

@@ -133,6 +133,11 @@ void Player::State::set_with_weights(bool with_weights) {
   with_weights_ = with_weights;
 }
 
+void Player::State::set_compact(bool compact) {
+  const std::scoped_lock lock(mutex_);
+  compact_ = compact;
+}
+
 void Player::State::Send() {
   const std::scoped_lock lock(mutex_);
   if (spare_ticks_.empty()) spare_ticks_.push_back(std::make_unique<Tick>());
@@ -145,6 +150,7 @@ void Player::State::Send() {
     while (request.items_size() > message->items) request.mutable_items()->RemoveLast();
     request.set_frame_id(next_frame_id_++);
     request.set_with_weights(with_weights_);
+    request.set_vertex_format(compact_ ? v1::VERTEX_FORMAT_INT16 : v1::VERTEX_FORMAT_UNSPECIFIED);
     message->tick = &tick;
     to_send_.push_back(std::move(message));
   }

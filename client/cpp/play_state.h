@@ -56,6 +56,7 @@ class Player::State {
   };
   Status status() const;
   void set_with_weights(bool with_weights);
+  void set_compact(bool compact);
 
  private:
   using Session = std::shared_ptr<const BoundSession>;
@@ -128,6 +129,7 @@ class Player::State {
   std::unique_ptr<Tick> received_;            // whose answers the caller looks at
   std::uint64_t next_frame_id_ = 1;
   bool with_weights_ = false;
+  bool compact_ = false;
 
   Messages spare_messages_;
   std::vector<std::unique_ptr<Tick>> spare_ticks_;

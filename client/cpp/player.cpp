@@ -22,6 +22,7 @@ std::size_t Player::under_way() const { return state_->status().under_way; }
 bool Player::draining() const { return state_->status().draining; }
 int Player::times_opened() const { return state_->status().times_opened; }
 void Player::set_with_weights(bool with_weights) { state_->set_with_weights(with_weights); }
+void Player::set_compact(bool compact) { state_->set_compact(compact); }
 
 std::uint32_t Player::Bind(const Session& session, const std::string& revision) {
   return state_->Bind(session.id(), revision);

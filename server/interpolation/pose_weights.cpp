@@ -203,7 +203,17 @@ Result<PoseWeights> PoseWeights::FromFit(const Points& placements, PoseWeightsFi
 }
 
 Eigen::VectorXd PoseWeights::At(const Point& point) const {
-  if (!field_->surface) return Eigen::VectorXd::Ones(1);
+  Eigen::VectorXd weights(field_->num_poses);
+  At(point, {weights.data(), static_cast<std::size_t>(field_->num_poses)});
+  return weights;
+}
+
+void PoseWeights::At(const Point& point, std::span<double> weights) const {
+  Eigen::Map<Eigen::VectorXd> sum(weights.data(), field_->num_poses);
+  if (!field_->surface) {
+    sum.setOnes();
+    return;
+  }
   const auto& [chart, lattice, locator, data] = *field_->surface;
   const Point place = chart.ToDomain(point);
   const auto [t, barycentric] =
@@ -213,13 +223,12 @@ Eigen::VectorXd PoseWeights::At(const Point& point) const {
   for (int k = 0; k < 3; ++k)
     corners[k] = lattice.vertices.row(lattice.triangles(t, k)).transpose();
   const CornerShares shares = CloughTocher(corners, barycentric);
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(field_->num_poses);
+  sum.setZero();
   for (int k = 0; k < 3; ++k) {
     for (int d = 0; d < 3; ++d) {
-      weights += shares[k][d] * data.row(3 * lattice.triangles(t, k) + d).transpose();
+      sum += shares[k][d] * data.row(3 * lattice.triangles(t, k) + d).transpose();
     }
   }
-  return weights;
 }
 
 int PoseWeights::num_poses() const { return field_->num_poses; }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "geometry/mesh.h"
 #include "geometry/progress.h"
@@ -62,8 +63,9 @@ class PoseWeights {
   PoseWeightsFit fit() const;
   static Result<PoseWeights> FromFit(const Points& placements, PoseWeightsFit fit);
 
-  // The N weights at a finite point.
+  // The N weights at a finite point; the second allocates nothing.
   Eigen::VectorXd At(const Point& point) const;
+  void At(const Point& point, std::span<double> weights) const;
 
   int num_poses() const;
 

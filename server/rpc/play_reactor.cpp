@@ -32,6 +32,11 @@ PlayReactor::PlayReactor(const Registry& registry, LiveStreams& streams, Compute
   }
 }
 
+void PlayReactor::StartWrite(MessageBytes message) {
+  outgoing_ = std::move(message);
+  ServerBidiReactor::StartWrite(&outgoing_);
+}
+
 void PlayReactor::OnCancel() {
   if (admitted_) stream_.OnCancelled();
 }

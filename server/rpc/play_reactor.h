@@ -10,13 +10,14 @@
 #include "rpc/call.h"
 #include "rpc/compute_pool.h"
 #include "rpc/live_streams.h"
+#include "rpc/message_bytes_traits.h"
 #include "rpc/play_stream.h"
 #include "session/registry.h"
 
 namespace posespace {
 
 // Carries a PlayStream over gRPC; decides nothing.  Deletes itself when the call is done.
-class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>,
+class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, MessageBytes>,
                           private PlayTransport,
                           private LiveStream {
  public:
@@ -31,9 +32,7 @@ class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::Pl
   void OnDone() override;
 
   void StartRead(v1::PlayRequest* message) override { ServerBidiReactor::StartRead(message); }
-  void StartWrite(const v1::PlayResponse* message) override {
-    ServerBidiReactor::StartWrite(message);
-  }
+  void StartWrite(MessageBytes message) override;
   void ScheduleWork() override {
     blends_.Post([this] { stream_.Work(); });
   }
@@ -51,6 +50,7 @@ class PlayReactor final : public grpc::ServerBidiReactor<v1::PlayRequest, v1::Pl
   LiveStreams& streams_;
   ComputePool& blends_;
   ComputePool& loads_;
+  MessageBytes outgoing_;
   PlayStream stream_;
   bool admitted_ = false;
 };

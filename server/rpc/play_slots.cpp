@@ -64,7 +64,7 @@ void PlaySlots::Bind(const v1::PlayRequest::Bind& bind, const Send& send) {
   } else {
     SetError(std::move(slot).error(), bound);
   }
-  send(std::move(response));
+  send(MessageBytes(response));
 }
 
 Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) {
@@ -98,7 +98,7 @@ void PlaySlots::FollowRevisions(const Send& send) {
         slot.pose_space = std::move(*newest);
         SetRevision(*slot.pose_space, response.mutable_revision_changed());
       }
-      send(std::move(response));
+      send(MessageBytes(response));
     }
     entry = deleted ? slots_.erase(entry) : std::next(entry);
   }
@@ -113,63 +113,15 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Tags& supe
                      std::to_string(limits_.max_stream_items) + " are taken",
                  {}};
   }
-  v1::PlayResponse response;
-  v1::PlayResponse::FrameResult* const result = response.mutable_frame_result();
-  result->set_frame_id(tick.frame_id());
-  result->mutable_items()->Reserve(tick.items_size());
-  std::vector<const PoseSpace*> pose_spaces;  // of each item that is still to be answered
+  items_.clear();
   for (const v1::PlayRequest::Item& item : tick.items()) {
-    v1::PlayResponse::ItemResult* const answer = result->add_items();
-    answer->set_slot(item.slot());
-    answer->set_tag(item.tag());
     const auto slot = slots_.find(item.slot());
-    const PoseSpace* const pose_space =
-        slot == slots_.end() ? nullptr : slot->second.pose_space.get();
-    pose_spaces.push_back(nullptr);
-    if (superseded.contains({item.slot(), item.tag()})) {
-      SetError(Error{ErrorCode::kSuperseded, "a later frame asks for this item again", {}}, answer);
-      result->set_superseded(result->superseded() + 1);
-    } else if (pose_space == nullptr) {
-      const std::string name = std::to_string(item.slot());
-      SetError(Error{ErrorCode::kSlotNotBound, "slot " + name + " has no session", {}}, answer);
-    } else {
-      pose_spaces.back() = pose_space;
-    }
+    items_.push_back({.pose_space = slot == slots_.end() ? nullptr : slot->second.pose_space.get(),
+                      .superseded = std::binary_search(superseded.begin(), superseded.end(),
+                                                       std::pair(item.slot(), item.tag()))});
   }
-  std::vector<int> together;
-  for (int first = 0; first < tick.items_size(); ++first) {
-    const PoseSpace* const pose_space = pose_spaces[first];
-    if (pose_space == nullptr) continue;
-    together.clear();
-    for (int k = first; k < tick.items_size(); ++k) {
-      if (pose_spaces[k] != pose_space) continue;
-      together.push_back(k);
-      pose_spaces[k] = nullptr;
-    }
-    BlendTogether(*pose_space, tick, together, result);
-  }
-  send(std::move(response));
+  send(AnswerTick(tick, items_));
   return {};
-}
-
-void PlaySlots::BlendTogether(const PoseSpace& pose_space, const v1::PlayRequest::Tick& tick,
-                              std::span<const int> items,
-                              v1::PlayResponse::FrameResult* result) const {
-  std::vector<NamedQuery> queries;
-  for (const int k : items) queries.push_back({&tick.items(k).query(), "query"});
-  auto frames = Guarded([&]() -> Result<std::vector<Result<Frame>>> {
-    return BlendQueries(pose_space, queries, /*weights_only=*/false);
-  });
-  for (std::size_t k = 0; k < items.size(); ++k) {
-    v1::PlayResponse::ItemResult* const answer = result->mutable_items(items[k]);
-    if (!frames) {
-      SetError(frames.error(), answer);
-    } else if (Result<Frame>& frame = (*frames)[k]; frame) {
-      ToProto(*frame, tick.with_weights(), answer->mutable_frame());
-    } else {
-      SetError(std::move(frame).error(), answer);
-    }
-  }
 }
 
 bool PlaySlots::MustLoad(const v1::PlayRequest& request) {
@@ -182,12 +134,14 @@ bool PlaySlots::MustLoad(const v1::PlayRequest& request) {
 }
 
 double PlaySlots::EstimateMicroseconds(const v1::PlayRequest& request) const {
+  constexpr int kTogether = 6;  // that many items fill enough lanes
+  const bool together = request.tick().items_size() >= kTogether;
   double sum = 0.0;
   for (const v1::PlayRequest::Item& item : request.tick().items()) {
     const auto slot = slots_.find(item.slot());
     if (slot == slots_.end()) continue;
     sum += posespace::EstimateMicroseconds(*slot->second.pose_space, item.query(),
-                                           /*weights_only=*/false);
+                                           /*weights_only=*/false, together);
   }
   return sum;
 }

@@ -6,13 +6,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
-#include <span>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "geometry/result.h"
 #include "posespace/v1/pose_service.pb.h"
+#include "rpc/message_bytes.h"
+#include "rpc/play_tick.h"
 #include "session/registry.h"
 
 namespace posespace {
@@ -26,12 +26,12 @@ namespace posespace {
 class PlaySlots {
  public:
   // Takes the answers, in order.
-  using Send = std::function<void(v1::PlayResponse)>;
+  using Send = std::function<void(MessageBytes)>;
 
   PlaySlots(const Registry& registry, const Limits& limits);
 
-  // Slot and tag of items.
-  using Tags = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+  // Slot and tag of items, sorted.
+  using Tags = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
   // Answers one message; items of `superseded` are not blended.  What is wrong with a slot or an
   // item is in the answer; kProtocolBreach ends the stream.
@@ -57,13 +57,11 @@ class PlaySlots {
   Result<Slot> Find(const v1::PlayRequest::Bind& bind);
   void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
   Result<void> Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded, const Send& send);
-  // Answers those items of a tick, which are of one pose space.
-  void BlendTogether(const PoseSpace& pose_space, const v1::PlayRequest::Tick& tick,
-                     std::span<const int> items, v1::PlayResponse::FrameResult* result) const;
 
   const Registry& registry_;
   const Limits limits_;
   std::map<std::uint32_t, Slot> slots_;
+  std::vector<TickItem> items_;          // of the tick being answered
   std::shared_ptr<Session> next_bound_;  // the session of the next message, when it is a bind
 };
 

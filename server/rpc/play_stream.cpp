@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 namespace posespace {
 
@@ -18,7 +17,7 @@ PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTrans
   welcome.mutable_welcome()->set_max_slots(static_cast<std::uint32_t>(limits.max_stream_slots));
   welcome.mutable_welcome()->set_max_items(static_cast<std::uint32_t>(limits.max_stream_items));
   welcome.mutable_welcome()->set_max_in_flight(static_cast<std::uint32_t>(limits.max_in_flight));
-  Queue(std::move(welcome));
+  Queue(MessageBytes(welcome));
 }
 
 void PlayStream::Start() {
@@ -45,9 +44,9 @@ void PlayStream::OnRead(bool ok) {
 void PlayStream::OnWritten(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
-  if (outgoing_.front().completes) --in_flight_;
-  queued_bytes_ -= outgoing_.front().bytes;
-  outgoing_.pop_front();
+  const Outgoing written = outgoing_.pop_front();
+  if (written.completes) --in_flight_;
+  queued_bytes_ -= written.bytes;
   if (!ok) {
     gone_ = true;
     End(Error{ErrorCode::kCancelled, "the client went away", {}});
@@ -67,23 +66,23 @@ void PlayStream::OnCancelled() {
 }
 
 void PlayStream::Work() {
-  std::vector<v1::PlayResponse> answers;
-  const auto send = [&](v1::PlayResponse answer) { answers.push_back(std::move(answer)); };
-  // The front stays in place while others append: deque references survive push_back.
-  const v1::PlayRequest* request = nullptr;
-  PlaySlots::Tags superseded;
+  answers_.clear();
+  superseded_.clear();
+  const v1::PlayRequest* request = nullptr;  // stays in place while others are read
   {
     const std::scoped_lock lock(mutex_);
-    request = &waiting_.front();
-    if (request->tick().latest_only()) superseded = Superseded();
+    request = &waiting_.front()->message();
+    if (request->tick().latest_only()) FindSuperseded(&superseded_);
   }
-  Result<void> answered = slots_.Answer(*request, superseded, send);
+  Result<void> answered = slots_.Answer(*request, superseded_, [this](MessageBytes answer) {
+    answers_.push_back(std::move(answer));
+  });
 
   std::unique_lock lock(mutex_);
   working_ = false;
-  waiting_.pop_front();
-  for (v1::PlayResponse& answer : answers) Queue(std::move(answer));
-  if (answers.empty() || gone_) {
+  spare_.push_back(waiting_.pop_front());
+  for (MessageBytes& answer : answers_) Queue(std::move(answer));
+  if (answers_.empty() || gone_) {
     --in_flight_;
   } else {
     outgoing_.back().completes = true;
@@ -99,12 +98,12 @@ void PlayStream::Beat(Clock::time_point now) {
   if (now >= old_at_) StartDraining(kOldGrace, now);
   if (cut_off_ && now >= *cut_off_) End(Error{ErrorCode::kDraining, "the service has ended", {}});
   if (!working_ && !outcome_ && queued_bytes_ <= kQueuedBytes) {
-    slots_.FollowRevisions([this](v1::PlayResponse answer) { Queue(std::move(answer)); });
+    slots_.FollowRevisions([this](MessageBytes answer) { Queue(std::move(answer)); });
   }
   if (!outcome_ && outgoing_.empty() && now - last_said_ >= kHeartbeat) {
     v1::PlayResponse heartbeat;
     heartbeat.mutable_heartbeat();
-    Queue(std::move(heartbeat));
+    Queue(MessageBytes(heartbeat));
   }
   const Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
@@ -132,23 +131,22 @@ void PlayStream::StartDraining(std::chrono::milliseconds stop_sending_in, Clock:
   duration->set_seconds(seconds.count());
   duration->set_nanos(
       static_cast<std::int32_t>(std::chrono::nanoseconds(stop_sending_in - seconds).count()));
-  Queue(std::move(draining));
+  Queue(MessageBytes(draining));
 }
 
 // Items of the frames that wait behind the one to be answered.
-PlaySlots::Tags PlayStream::Superseded() const {
-  PlaySlots::Tags tags;
-  for (auto later = waiting_.begin() + 1; later != waiting_.end(); ++later) {
-    for (const v1::PlayRequest::Item& item : later->tick().items()) {
-      tags.emplace(item.slot(), item.tag());
+void PlayStream::FindSuperseded(PlaySlots::Tags* tags) const {
+  for (std::size_t k = 1; k < waiting_.size(); ++k) {
+    for (const v1::PlayRequest::Item& item : waiting_[k]->message().tick().items()) {
+      tags->emplace_back(item.slot(), item.tag());
     }
   }
-  return tags;
+  std::sort(tags->begin(), tags->end());
 }
 
-void PlayStream::Queue(v1::PlayResponse message) {
+void PlayStream::Queue(MessageBytes message) {
   if (gone_) return;
-  const std::size_t bytes = message.ByteSizeLong();
+  const std::size_t bytes = message.size();
   queued_bytes_ += bytes;
   outgoing_.push_back({std::move(message), bytes});
 }
@@ -158,8 +156,8 @@ void PlayStream::Queue(v1::PlayResponse message) {
 void PlayStream::End(Result<void> outcome) {
   if (finished_) return;
   if (!outcome_) outcome_ = std::move(outcome);
-  waiting_.resize(working_ ? 1 : 0);
-  if (gone_) outgoing_.resize(writing_ ? 1 : 0);
+  waiting_.shorten(working_ ? 1 : 0);
+  if (gone_) outgoing_.shorten(writing_ ? 1 : 0);
 }
 
 // Starts what can be started and says what the caller must do after unlocking.  Reads and writes
@@ -169,24 +167,39 @@ PlayStream::Next PlayStream::Advance(bool may_work_here) {
   if (!writing_ && !outgoing_.empty()) {
     writing_ = true;
     last_said_ = Clock::now();
-    transport_.StartWrite(&outgoing_.front().message);
+    transport_.StartWrite(std::move(outgoing_.front().message));
+  }
+  Next work = Next::kWait;
+  if (!working_ && !waiting_.empty() && queued_bytes_ <= kQueuedBytes) {
+    working_ = true;
+    const v1::PlayRequest& request = waiting_.front()->message();
+    const bool brief = slots_.EstimateMicroseconds(request) <= kShortWork;
+    work = slots_.MustLoad(request) ? Next::kScheduleLoad
+           : may_work_here && brief ? Next::kWorkHere
+                                    : Next::kScheduleWork;
+    // The answer is a moment away, and is written before the next message is read: reading first
+    // would send the client its credit in a packet of its own.
+    if (work == Next::kWorkHere) return work;
   }
   if (!reading_ && !all_said_ && !outcome_ && in_flight_ < max_in_flight_) {
     reading_ = true;
-    transport_.StartRead(&incoming_);
+    if (!incoming_) TakeSpare();
+    incoming_->Clear();
+    transport_.StartRead(&incoming_->message());
   }
-  if (!working_ && !waiting_.empty() && queued_bytes_ <= kQueuedBytes) {
-    working_ = true;
-    if (slots_.MustLoad(waiting_.front())) return Next::kScheduleLoad;
-    const bool brief = slots_.EstimateMicroseconds(waiting_.front()) <= kShortWork;
-    return may_work_here && brief ? Next::kWorkHere : Next::kScheduleWork;
-  }
+  if (work != Next::kWait) return work;
   const bool over = outcome_ || (all_said_ && waiting_.empty());
   if (over && !working_ && !writing_ && outgoing_.empty()) {
     finished_ = true;
     return Next::kFinish;
   }
   return Next::kWait;
+}
+
+void PlayStream::TakeSpare() {
+  if (spare_.empty()) spare_.push_back(std::make_unique<ReusedRequest>());
+  incoming_ = std::move(spare_.back());
+  spare_.pop_back();
 }
 
 void PlayStream::Do(Next next) {

@@ -4,12 +4,16 @@
 
 #include <chrono>
 #include <cstddef>
-#include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "geometry/result.h"
 #include "posespace/v1/pose_service.pb.h"
+#include "rpc/fifo.h"
+#include "rpc/message_bytes.h"
+#include "rpc/play_request.h"
 #include "rpc/play_slots.h"
 #include "session/limits.h"
 
@@ -21,8 +25,8 @@ class PlayTransport {
  public:
   // Reads the next message; then OnRead.
   virtual void StartRead(v1::PlayRequest* message) = 0;
-  // Writes a message, which stays until OnWritten.
-  virtual void StartWrite(const v1::PlayResponse* message) = 0;
+  // Writes a PlayResponse; then OnWritten.
+  virtual void StartWrite(MessageBytes message) = 0;
   // Has PlayStream::Work called on a thread that may be busy for long.
   virtual void ScheduleWork() = 0;
   // The same on a thread that may wait for a disk.
@@ -43,6 +47,9 @@ class PlayTransport {
 // itself.  The stream ends when the client has said all and got its answers, by a breach of the
 // protocol, by cancellation, or when it outlives its draining, which comes with its age at the
 // latest: gRPC has no greatest age of a stream, and new replicas would never get load.
+//
+// Requests are read into one piece of memory each (play_request.h), and answers are written once
+// (play_tick.h): a steady stream allocates nothing for an item.
 class PlayStream {
  public:
   using Clock = std::chrono::steady_clock;
@@ -74,28 +81,33 @@ class PlayStream {
 
  private:
   struct Outgoing {
-    v1::PlayResponse message;
+    MessageBytes message;  // none once it is being written
     std::size_t bytes;
     bool completes = false;  // the last answer to a message that was read
   };
   enum class Next { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
 
-  PlaySlots::Tags Superseded() const;
+  void FindSuperseded(PlaySlots::Tags* tags) const;
   void StartDraining(std::chrono::milliseconds stop_sending_in, Clock::time_point now);
-  void Queue(v1::PlayResponse message);
+  void Queue(MessageBytes message);
   void End(Result<void> outcome);
+  void TakeSpare();
   Next Advance(bool may_work_here);
   void Do(Next next);
 
   PlayTransport& transport_;
   const std::size_t max_in_flight_;
   const Clock::time_point old_at_;
-  PlaySlots slots_;  // used by whoever set working_, or under the lock while it is not set
+  // Used by whoever set working_, or under the lock while it is not set.
+  PlaySlots slots_;
+  PlaySlots::Tags superseded_;
+  std::vector<MessageBytes> answers_;
 
   std::mutex mutex_;
-  v1::PlayRequest incoming_;
-  std::deque<v1::PlayRequest> waiting_;  // read and not yet answered; its front is being worked on
-  std::deque<Outgoing> outgoing_;        // its front is being written while writing_
+  std::unique_ptr<ReusedRequest> incoming_;
+  Fifo<std::unique_ptr<ReusedRequest>> waiting_;  // not yet answered; the front is worked on
+  std::vector<std::unique_ptr<ReusedRequest>> spare_;
+  Fifo<Outgoing> outgoing_;  // its front is being written while writing_
   std::size_t queued_bytes_ = 0;
   std::size_t in_flight_ = 0;
   bool reading_ = false;

@@ -90,8 +90,7 @@ grpc::ServerUnaryReactor* PoseService::Blend(grpc::CallbackServerContext* contex
   return ReplyAbout(request->session_id(), registry_, bulk_pool_, context, "Blend", blend);
 }
 
-grpc::ServerBidiReactor<v1::PlayRequest, v1::PlayResponse>* PoseService::Play(
-    grpc::CallbackServerContext* /*context*/) {
+grpc::ServerBidiReactor<v1::PlayRequest, MessageBytes>* PoseService::Play() {
   return new PlayReactor(registry_, streams_, blend_pool_, bulk_pool_);
 }
 

@@ -73,32 +73,37 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
 
 Result<Query> QueryFromProto(const v1::Query& query) {
   Query result;
+  TRY(QueryFromProto(query, &result));
+  return result;
+}
+
+Result<void> QueryFromProto(const v1::Query& query, Query* result) {
   switch (query.position_case()) {
     case v1::Query::kAt: {
       const Point at(query.at().x(), query.at().y());
       if (!at.allFinite()) return ErrorAt(ErrorCode::kPoseNotFinite, "at", "is not finite");
-      result.position = at;
+      result->position = at;
       break;
     }
     case v1::Query::kWeights: {
       const auto& values = query.weights().values();
-      Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
+      const Eigen::Map<const Eigen::VectorXd> weights(values.data(), values.size());
       if (!weights.allFinite()) {
         return ErrorAt(ErrorCode::kWeightsNotFinite, "weights", "are not all finite");
       }
-      result.position = std::move(weights);
+      result->position = Eigen::VectorXd(weights);
       break;
     }
     case v1::Query::POSITION_NOT_SET:
       return ErrorAt(ErrorCode::kInvalidOption, "position", "is missing: give at or weights");
   }
-  result.options = TRY(BlendOptionsFromProto(query.options()));
-  result.sigma = query.options().sigma();
-  if (!(result.sigma >= 0.0 && result.sigma <= 1.0)) {
+  result->options = TRY(BlendOptionsFromProto(query.options()));
+  result->sigma = query.options().sigma();
+  if (!(result->sigma >= 0.0 && result->sigma <= 1.0)) {
     return ErrorAt(ErrorCode::kInvalidOption, "options.sigma",
-                   "is " + std::to_string(result.sigma) + ", not 0 to 1");
+                   "is " + std::to_string(result->sigma) + ", not 0 to 1");
   }
-  return result;
+  return {};
 }
 
 Result<void> CheckQueryCount(int count, int most) {
@@ -154,13 +159,14 @@ Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
   return std::move(BlendQueries(pose_space, {&named, 1}, weights_only).front());
 }
 
-double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query,
-                            bool weights_only) {
-  constexpr double kWeights = 1.0;  // the weight field and the limits
-  constexpr double kSolve = 0.02;   // a vertex, each time it is solved for: alone; together, less
-  constexpr double kExact = 0.12;   // the same, for what is blended in double
-  constexpr double kLogarithms = 0.2;  // a vertex and pose
-  constexpr double kMending = 10.0;    // a vertex
+double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query, bool weights_only,
+                            bool together) {
+  constexpr double kWeights = 0.3;          // the weight field and the limits
+  constexpr double kSolve = 0.02;           // a vertex, each time it is solved for, alone
+  constexpr double kSolveTogether = 0.004;  // the same, in the lanes of a vector
+  constexpr double kExact = 0.12;           // the same, for what is blended in double
+  constexpr double kLogarithms = 0.2;       // a vertex and pose
+  constexpr double kMending = 10.0;         // a vertex
   if (weights_only) return kWeights;
   const v1::BlendOptions& options = query.options();
   const double vertices = pose_space.mesh().num_vertices();
@@ -169,7 +175,8 @@ double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query,
   const bool is_linear = options.stretch() == v1::STRETCH_BLEND_UNSPECIFIED ||
                          options.stretch() == v1::STRETCH_BLEND_LINEAR;
   const int solves = 1 + (options.has_refits() ? options.refits() : BlendOptions().refits);
-  double sum = kWeights + (is_rigid && is_linear ? kSolve : kExact) * solves * vertices;
+  const double solve = !is_rigid || !is_linear ? kExact : together ? kSolveTogether : kSolve;
+  double sum = kWeights + solve * solves * vertices;
   if (!is_linear) sum += kLogarithms * pose_space.mesh().num_poses() * vertices;
   if (options.repair()) sum += kMending * vertices;
   return sum;

@@ -20,6 +20,9 @@ namespace posespace {
 //        kWeightsNotFinite.
 Result<Query> QueryFromProto(const v1::Query& query);
 
+// The same into a query whose memory is used again; after a failure it means nothing.
+Result<void> QueryFromProto(const v1::Query& query, Query* result);
+
 // A request has 1 to `most` queries.  Fails  kTooManyQueries, kInvalidOption (none).
 Result<void> CheckQueryCount(int count, int most);
 
@@ -43,8 +46,10 @@ std::vector<Result<Frame>> BlendQueries(const PoseSpace& pose_space,
 Result<Frame> BlendQuery(const PoseSpace& pose_space, const v1::Query& query,
                          const std::string& field, bool weights_only);
 
-// About how long blends take, in microseconds: good enough to decide which thread should do it.
-double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query, bool weights_only);
+// About how long a blend takes, in microseconds, alone or together with others like it: good enough
+// to decide which thread should do it.
+double EstimateMicroseconds(const PoseSpace& pose_space, const v1::Query& query, bool weights_only,
+                            bool together = false);
 
 // Vertices become little-endian float32 x0 y0 x1 y1 ...; weights are left out unless wanted.
 void ToProto(const Frame& frame, bool with_weights, v1::Frame* out);

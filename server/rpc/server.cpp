@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/server.h"
 
-#include <grpc/grpc.h>
 #include <grpc/health/v1/health.pb.h>
 #include <grpcpp/ext/health_check_service_server_builder_option.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
@@ -13,30 +12,17 @@
 #include <thread>
 #include <utility>
 
+#include "rpc/transport_options.h"
+
 namespace posespace {
 namespace {
 
-constexpr int kMetadataBytes = 8 << 10;
 constexpr std::size_t kWaitingBlends = 4'096;  // a few seconds of work
 constexpr std::size_t kWaitingUploads = 64;    // each may hold a whole request
 constexpr int kBulkNiceness = 5;               // pictures, uploads and loads give way to frames
 constexpr int kMatchingNiceness = 19;          // as long as builds, and as patient
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
-void SetTransportOptions(grpc::ServerBuilder& builder, const Limits& limits) {
-  // Without this two servers could share a port, and each would get some of the calls.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
-  builder.SetMaxSendMessageSize(-1);
-  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMetadataBytes);
-  // The clients ship the same values.
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-}
 
 // Lists and describes every service, gRPC's health check too: reflection fails as a whole for a
 // service whose descriptor is not linked, and gRPC itself links none of its own.

@@ -14,7 +14,6 @@
 #include "drawing/decode.h"
 #include "drawing/png_file.h"
 #include "geometry/polygon.h"
-#include "interpolation/batch_blend.h"
 #include "interpolation/texture_weights.h"
 #include "session/interior_stage.h"
 #include "session/placements.h"
@@ -359,7 +358,15 @@ Result<std::shared_ptr<const PoseSpace>> PoseSpace::FromParts(Parts parts) {
   return std::shared_ptr<const PoseSpace>(new PoseSpace(std::move(state)));
 }
 
-Result<Frame> PoseSpace::Weigh(const Query& query) const {
+Result<Frame> PoseSpace::Weighed(const Query& query) const {
+  Frame frame;
+  frame.weights.resize(mesh().num_poses());
+  TRY(Weigh(query, {frame.weights.data(), static_cast<std::size_t>(frame.weights.size())}));
+  frame.texture_weights = TextureWeightsOf(query, frame.weights);
+  return frame;
+}
+
+Result<void> PoseSpace::Weigh(const Query& query, std::span<double> weights) const {
   if (query.options.refits < 0 || query.options.refits > 3) {
     return Refused(ErrorCode::kInvalidOption, "options.refits",
                    "refits is " + std::to_string(query.options.refits) + ", not 0 to 3");
@@ -367,23 +374,29 @@ Result<Frame> PoseSpace::Weigh(const Query& query) const {
   if (!(query.sigma >= 0.0 && query.sigma <= 1.0)) {
     return Refused(ErrorCode::kInvalidOption, "options.sigma", "sigma is not within 0 to 1");
   }
-
-  Frame frame;
   if (const Point* at = std::get_if<Point>(&query.position)) {
     if (!at->allFinite()) {
       return Refused(ErrorCode::kPoseNotFinite, "at", "the point of pose space is not finite");
     }
-    frame.weights = state_->weights.At(*at);
+    state_->weights.At(*at, weights);
   } else {
-    frame.weights =
+    const Eigen::VectorXd checked =
         TRY(CheckedWeights(std::get<Eigen::VectorXd>(query.position), mesh().num_poses()));
+    std::copy(checked.begin(), checked.end(), weights.begin());
   }
+  return {};
+}
 
+Eigen::VectorXd PoseSpace::TextureWeightsOf(const Query& query,
+                                            const Eigen::VectorXd& weights) const {
   // Pixels can only be mixed by weights in [0, 1]: raw ones are limited for them all the same.
   const ShearLimit limit =
       query.options.shear_limit == ShearLimit::kOff ? ShearLimit::kBand : query.options.shear_limit;
-  frame.texture_weights = TextureWeights(LimitedWeights(frame.weights, limit), query.sigma);
-  return frame;
+  return TextureWeights(LimitedWeights(weights, limit), query.sigma);
+}
+
+void PoseSpace::Solve(std::span<BlendJob> jobs, const BlendOptions& options) const {
+  state_->blend.Solve(jobs, options);
 }
 
 Result<Frame> PoseSpace::Blend(const Query& query, bool weights_only) const {
@@ -394,7 +407,7 @@ std::vector<Result<Frame>> PoseSpace::BlendAll(std::span<const Query> queries,
                                                bool weights_only) const {
   std::vector<Result<Frame>> frames;
   frames.reserve(queries.size());
-  for (const Query& query : queries) frames.push_back(Weigh(query));
+  for (const Query& query : queries) frames.push_back(Weighed(query));
   if (weights_only) return frames;
 
   std::vector<BlendJob> jobs;
@@ -413,7 +426,7 @@ std::vector<Result<Frame>> PoseSpace::BlendAll(std::span<const Query> queries,
                       frame.vertices.data()});
       solved.push_back(&frame);
     }
-    state_->blend.Solve(jobs, queries[first].options);
+    Solve(jobs, queries[first].options);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       solved[k]->folds = jobs[k].folds;
       solved[k]->mended = jobs[k].mended;

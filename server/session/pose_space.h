@@ -13,6 +13,7 @@
 #include "drawing/render.h"
 #include "geometry/progress.h"
 #include "geometry/result.h"
+#include "interpolation/batch_blend.h"
 #include "interpolation/pose_weights.h"
 #include "interpolation/rigid_blend.h"
 #include "mapping/pipeline.h"
@@ -137,6 +138,16 @@ class PoseSpace {
   std::vector<Result<Frame>> BlendAll(std::span<const Query> queries,
                                       bool weights_only = false) const;
 
+  // The same in memory that the caller keeps, for those who blend all the time: first each query's
+  // weights, as many as there are poses, then all that agree in their options, in jobs with these
+  // weights.  Allocates as BatchBlend does, and for explicit weights.
+  // Fails  as Blend.
+  Result<void> Weigh(const Query& query, std::span<double> weights) const;
+  void Solve(std::span<BlendJob> jobs, const BlendOptions& options) const;
+
+  // How a query with these weights mixes the poses' pixels.
+  Eigen::VectorXd TextureWeightsOf(const Query& query, const Eigen::VectorXd& weights) const;
+
   // The blend of a query as a picture; transparent when the frame has no vertices.  The first
   // picture makes the textures ready and takes longer, up to some 50 ms a megapixel.
   // Requires  a frame of this pose space; a view whose size is bounded by the caller.
@@ -167,7 +178,7 @@ class PoseSpace {
   static Result<std::shared_ptr<const PoseSpace>> Place(const std::shared_ptr<const Body>& body,
                                                         const Points& placements,
                                                         Progress* progress);
-  Result<Frame> Weigh(const Query& query) const;  // a frame without vertices
+  Result<Frame> Weighed(const Query& query) const;  // a frame without vertices
   std::shared_ptr<const State> state_;
 };
 

@@ -144,6 +144,19 @@ def test_frames_without_weights_are_the_same_otherwise(walk):
     assert np.array_equal(bare.vertices, walk.blend(at=(0.2, 0.2)).vertices)
 
 
+def test_compact_frames_are_off_by_no_more_than_half_a_step(walk):
+    places = [(0.2, 0.2), (0.7, 0.1), (1.5, -0.4)]
+    with walk.play() as player:
+        frames = list(player.frames(places, compact=True))
+        ticked = player.tick([player.avatar.item(at=at) for at in places], compact=True)
+    for at, frame, same in zip(places, frames, ticked, strict=True):
+        exact = walk.blend(at=at).vertices
+        longer = np.ptp(exact, axis=0).max()
+        assert frame.vertices.dtype == np.float32
+        assert np.array_equal(frame.vertices, same.vertices)
+        assert 0 < np.abs(frame.vertices - exact).max() <= longer / 128_000 + 1e-4
+
+
 def test_blend_options_hold_for_frames(walk):
     with walk.play() as player:
         (frame,) = player.frames([(0.6, 0.2)], method="linear")

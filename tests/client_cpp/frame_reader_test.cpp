@@ -128,6 +128,41 @@ TEST(FrameReader, SkipsFieldsOfLaterVersions) {
   ExpectSame(response.frame_result(), items);
 }
 
+// With the steps given as bytes.
+v1::PlayResponse QuantizedResult(const std::string& values) {
+  v1::PlayResponse response;
+  auto& grid = *response.mutable_frame_result()->add_items()->mutable_frame()->mutable_quantized();
+  grid.set_center_x(100.0f);
+  grid.set_center_y(-7.0f);
+  grid.set_step(0.5f);
+  grid.set_values(values);
+  return response;
+}
+
+TEST(FrameReader, ReadsQuantizedVerticesAsFloats) {
+  const std::int16_t steps[] = {0, 1, -32767, 32767};
+  const std::string values(reinterpret_cast<const char*>(steps), sizeof(steps));
+  for (const int block : {-1, 1, 3}) {
+    FrameItems items;
+    std::uint64_t frame_id = 0;
+    ASSERT_EQ(Read(QuantizedResult(values).SerializeAsString(), &frame_id, &items, block),
+              ReadOutcome::kFrameResult);
+    ASSERT_EQ(items.floats, 4u);
+    EXPECT_EQ(items.items[0].vertices_end - items.items[0].vertices_begin, 4u);
+    EXPECT_THAT(std::vector<float>(items.vertices.begin(), items.vertices.begin() + 4),
+                ::testing::ElementsAre(100.0f, -6.5f, -16283.5f, 16376.5f));
+  }
+}
+
+TEST(FrameReader, RefusesEveryTruncatedMessageWithQuantizedVertices) {
+  const std::string whole = QuantizedResult(std::string(40, 'x')).SerializeAsString();
+  for (std::size_t size = 1; size < whole.size(); ++size) {
+    FrameItems items;
+    std::uint64_t frame_id = 0;
+    EXPECT_EQ(Read(whole.substr(0, size), &frame_id, &items), ReadOutcome::kBroken) << size;
+  }
+}
+
 TEST(FrameReader, RefusesEveryTruncatedMessage) {
   std::mt19937 random(3);
   v1::PlayResponse response = RandomResult(random);

@@ -128,6 +128,23 @@ TEST_F(PlayerTest, AnswersWeightsWhenAskedForThem) {
   }
 }
 
+TEST_F(PlayerTest, ReadsVerticesThatTravelInHalfTheBytes) {
+  Player player = stars().Play();
+  const auto ask = [&] {
+    for (int k = 0; k < 20; ++k) player.Ask(0, static_cast<std::uint32_t>(k), PlaceOf(k));
+    return player.Tick();
+  };
+  player.set_compact(true);
+  for (const Answer& answer : ask()) {
+    const Frame frame = stars().Blend(PlaceOf(static_cast<int>(answer.tag)));
+    const double distance = Distance(answer.vertices, frame.vertices);
+    EXPECT_GT(distance, 0.0) << "rounded";
+    EXPECT_LE(distance, 300.0 / 128'000.0);
+  }
+  player.set_compact(false);
+  EXPECT_EQ(Distance(ask()[3].vertices, stars().Blend(PlaceOf(3)).vertices), 0.0);
+}
+
 TEST_F(PlayerTest, BlendsPointsWeightsAndOptionsInOnePlaceOneAfterAnother) {
   Player player = stars().Play();
   const std::vector<double> weights = {0.25, 0.25, 0.5};

@@ -88,10 +88,12 @@ class Connection final : public PlayTransport {
       stream_.OnRead(turn <= frames_ && !cancelled_);
     });
   }
-  void StartWrite(const v1::PlayResponse* message) override {
-    Begin([=, this] {
-      if (message->has_frame_result()) {
-        const auto frame_id = static_cast<int>(message->frame_result().frame_id());
+  void StartWrite(MessageBytes bytes) override {
+    v1::PlayResponse message;
+    EXPECT_TRUE(message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
+    Begin([message, this] {
+      if (message.has_frame_result()) {
+        const auto frame_id = static_cast<int>(message.frame_result().frame_id());
         EXPECT_EQ(frame_id, ++results_);
       }
       stream_.OnWritten(!cancelled_);

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "tests/interpolation/counted_allocations.h"
 #include "tests/rpc/built_session.h"
 #include "tests/support/flaky_store.h"
 
@@ -29,10 +32,14 @@ class Wire final : public PlayTransport {
     EXPECT_FALSE(finished);
     reading = message;
   }
-  void StartWrite(const v1::PlayResponse* message) override {
+  void StartWrite(MessageBytes message) override {
     EXPECT_EQ(writing, nullptr) << "two writes at once";
     EXPECT_FALSE(finished);
-    writing = message;
+    if (parse) {
+      EXPECT_TRUE(written.ParseFromArray(message.data(), static_cast<int>(message.size())));
+    }
+    bytes = std::move(message);
+    writing = &written;
   }
   void ScheduleWork() override {
     EXPECT_FALSE(work) << "two threads at once";
@@ -49,6 +56,9 @@ class Wire final : public PlayTransport {
   }
 
   v1::PlayRequest* reading = nullptr;
+  MessageBytes bytes;
+  bool parse = true;
+  v1::PlayResponse written;  // the same, parsed
   const v1::PlayResponse* writing = nullptr;
   bool work = false;
   int loads = 0;
@@ -208,6 +218,101 @@ TEST_F(Play, ReturnsWeightsWhenAsked) {
   ASSERT_EQ(frame.weights_size(), 2);
   EXPECT_NEAR(frame.weights(1), 1.0, 1e-9);
   EXPECT_EQ(frame.texture_weights_size(), 2);
+}
+
+TEST_F(Play, SendsVerticesInHalfTheBytesWhenAsked) {
+  BindSlot0();
+  Say(Tick(1, {0}));
+  const v1::Frame whole = TakeAll().back().frame_result().items(0).frame();
+  auto tick = Tick(2, {0});
+  tick.mutable_tick()->set_vertex_format(v1::VERTEX_FORMAT_INT16);
+  Say(tick);
+  const v1::Frame half = TakeAll().back().frame_result().items(0).frame();
+  EXPECT_FALSE(whole.has_quantized());
+  EXPECT_EQ(half.vertices(), "");
+  EXPECT_EQ(half.quantized().values().size(), 4u * Vertices());
+
+  std::vector<float> vertices(2 * Vertices());
+  std::vector<std::int16_t> steps(vertices.size());
+  std::memcpy(vertices.data(), whole.vertices().data(), whole.vertices().size());
+  std::memcpy(steps.data(), half.quantized().values().data(), half.quantized().values().size());
+  const auto& grid = half.quantized();
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const float center = k % 2 == 0 ? grid.center_x() : grid.center_y();
+    ASSERT_NEAR(center + grid.step() * steps[k], vertices[k], 0.51 * grid.step() + 5e-5) << k;
+  }
+}
+
+TEST_F(Play, RefusesTheItemsOfATickInAnUnknownFormat) {
+  BindSlot0();
+  auto tick = Tick(1, {0, 0});
+  tick.mutable_tick()->set_vertex_format(static_cast<v1::VertexFormat>(3));
+  Say(tick);
+  const auto result = TakeAll().back().frame_result();
+  ASSERT_EQ(result.items_size(), 2);
+  for (const auto& item : result.items()) EXPECT_EQ(item.reason(), "INVALID_OPTION");
+  EXPECT_FALSE(wire_.finished);
+}
+
+TEST_F(Play, AnswersItemsOfManyKindsAsEachAlone) {
+  BindSlot0();
+  auto together = Tick(1, std::vector<std::uint32_t>(40, 0));
+  for (int k = 0; k < 40; ++k) {
+    auto& query = *together.mutable_tick()->mutable_items(k)->mutable_query();
+    query.mutable_at()->set_y(0.02 * k);
+    if (k % 3 == 1) query.mutable_options()->set_refits(k % 4);
+    if (k % 7 == 2) query.mutable_options()->set_method(v1::BLEND_METHOD_LINEAR);
+    if (k % 5 == 3) {
+      query.mutable_weights()->add_values(0.3);
+      query.mutable_weights()->add_values(0.7);
+    }
+  }
+  Say(together);
+  const auto result = TakeAll().back().frame_result();
+  ASSERT_EQ(result.items_size(), 40);
+  for (int k = 0; k < 40; ++k) {
+    auto alone = Tick(2, {});
+    *alone.mutable_tick()->add_items() = together.tick().items(k);
+    Say(alone);
+    const auto expected = TakeAll().back().frame_result().items(0);
+    EXPECT_EQ(result.items(k).SerializeAsString(), expected.SerializeAsString()) << k;
+  }
+}
+
+TEST_F(Play, AllocatesNothingForAnItemOfASteadyStream) {
+  BindSlot0();
+  for (const std::size_t count : {1, 16, 64}) {
+    const v1::PlayRequest tick = Tick(1, std::vector<std::uint32_t>(count, 0), 0.3);
+    const std::string bytes = tick.SerializeAsString();
+    const auto play = [&] {
+      ASSERT_NE(wire_.reading, nullptr);
+      ASSERT_TRUE(std::exchange(wire_.reading, nullptr)->ParseFromString(bytes));
+      stream_.OnRead(true);
+      if (std::exchange(wire_.work, false)) stream_.Work();
+      ASSERT_GT(wire_.bytes.size(), count * 8 * Vertices());
+      wire_.bytes = {};
+      wire_.writing = nullptr;
+      stream_.OnWritten(true);
+    };
+    wire_.parse = false;
+    for (int k = 0; k < 10; ++k) play();
+    const int before = CountedAllocations();
+    constexpr int kMessages = 100;
+    for (int k = 0; k < kMessages; ++k) play();
+    // What protobuf reads a message into, however many items it has.
+    EXPECT_LE(CountedAllocations() - before, 4 * kMessages) << count << " items";
+  }
+}
+
+// Once each message made the memory for the next one larger, until there was none.
+TEST_F(Play, AnswersHundredsOfFramesReadByOtherThreads) {
+  BindSlot0();
+  const v1::PlayRequest tick = Tick(1, {0, 0}, 0.3);
+  for (int k = 0; k < 300; ++k) {
+    std::thread([&] { *std::exchange(wire_.reading, nullptr) = tick; }).join();
+    stream_.OnRead(true);
+    ASSERT_EQ(TakeAll().back().frame_result().items_size(), 2) << k;
+  }
 }
 
 TEST_F(Play, KeepsOneAvatarsErrorFromEndingTheStream) {

@@ -325,12 +325,21 @@ def mesh(message: geometry_pb2.Mesh) -> results.Mesh:
     )
 
 
+def _vertices(message: pose_service_pb2.Frame) -> NDArray[np.float32]:
+    """(V, 2), whichever way they came."""
+    if not message.HasField("quantized"):
+        return np.frombuffer(message.vertices, dtype="<f4").reshape(-1, 2)
+    grid = message.quantized
+    steps = np.frombuffer(grid.values, dtype="<i2").reshape(-1, 2).astype(np.float32)
+    return np.float32(grid.step) * steps + np.float32([grid.center_x, grid.center_y])
+
+
 def frame(
     message: pose_service_pb2.Frame, shape_ids: Sequence[str], revision: str
 ) -> results.Frame:
     """A drawing at a place of pose space."""
     return results.Frame(
-        vertices=np.frombuffer(message.vertices, dtype="<f4").reshape(-1, 2),
+        vertices=_vertices(message),
         weights=dict(zip(shape_ids, message.weights, strict=False)),
         texture_weights=dict(zip(shape_ids, message.texture_weights, strict=False)),
         folds=message.folds,

@@ -100,6 +100,10 @@ class Player {
   // Whether answers carry weights; not by default.  From the next Send on.
   void set_with_weights(bool with_weights);
 
+  // Whether vertices travel as int16, in half the bytes, and are then off by at most 1/128,000 of
+  // the longer side of the drawing's box; not by default.  From the next Send on.
+  void set_compact(bool compact);
+
   // Sends what was gathered as one tick, and returns without waiting for its answer.  What exceeds
   // max_in_flight messages waits here and goes out as answers are received.
   void Send();
