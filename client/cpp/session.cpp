@@ -91,10 +91,19 @@ SessionState Session::SetCorrespondences(const std::vector<std::map<std::string,
   return FromMessage(response.session());
 }
 
-Suggestion Session::Suggest(std::optional<int> samples) const {
+namespace {
+
+v1::Rotation ToMessage(Rotation rotation) {
+  return rotation == Rotation::kAny ? v1::ROTATION_ANY : v1::ROTATION_UPRIGHT;
+}
+
+}  // namespace
+
+Suggestion Session::Suggest(std::optional<int> samples, Rotation rotation) const {
   v1::SuggestCorrespondencesRequest request;
   request.set_session_id(id());
   if (samples) request.set_samples(*samples);
+  request.set_rotation(ToMessage(rotation));
   v1::SuggestCorrespondencesResponse response;
   handle_->channel->Call(request, &response, kMatching);
   return FromMessage(response);
@@ -123,6 +132,7 @@ v1::StartBuildRequest BuildRequest(const std::string& session_id, const BuildOpt
   v1::BuildOptions& message = *request.mutable_options();
   if (options.tolerance) message.set_tolerance(*options.tolerance);
   if (options.target_edge_length) message.set_target_edge_length(*options.target_edge_length);
+  message.set_rotation(ToMessage(options.rotation));
   if (options.max_vertices) message.set_max_vertices(*options.max_vertices);
   if (options.align) message.set_align(*options.align);
   return request;

@@ -23,6 +23,13 @@ namespace {
 
 constexpr double kCoarseShare = 0.5;  // of the progress, when all pairs have been compared
 constexpr double kUpright = std::numbers::pi / 4.0;  // marks that turn farther end uprightness
+// A match without position this many times cheaper than the upright one shows a turned copy: such
+// pairs have up to 0.07, all others of fifty real groups 0.3 or more.
+constexpr double kTurnedCopy = 0.15;
+constexpr double kMismatchSlope = 4.5;
+constexpr double kLeastMismatch = 0.12;  // drawings of unlike but well matched things reach 0.10
+constexpr double kLeastMarkedMismatch = 0.1;
+constexpr int kMismatchSteps = 256;
 constexpr int kMaxCorners =
     100'000;                       // of all outlines together; each becomes a row of every outline
 constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
@@ -42,7 +49,8 @@ class GroupMatching {
         marks_(std::move(marks)),
         options_(options),
         progress_(progress),
-        n_(static_cast<int>(curves_.size())) {}
+        n_(static_cast<int>(curves_.size())),
+        sides_(curves_.begin(), curves_.end()) {}
 
   // False when cancelled.
   bool Run() { return ComparePairs() && FillLandmarks() && MatchAlongTree(); }
@@ -73,7 +81,55 @@ class GroupMatching {
     return evidence;
   }
 
+  // As in MatchedOutlines, by the numbers of this order.
+  std::optional<Mismatch> FindMismatch() const {
+    const double least = marks_.on.empty() ? kLeastMismatch : kLeastMarkedMismatch;
+    std::optional<Mismatch> worst;
+    for (int i = 0; i < n_; ++i) {
+      for (int j = i + 1; j < n_; ++j) {
+        const double share = MismatchShare(maps_[i], maps_[j], 0.0, 1.0);
+        if (share > (worst ? worst->share : least)) worst = Mismatch{i, j, share, {}};
+      }
+    }
+    if (worst) worst->landmarks = LandmarksAround(*worst);
+    return worst;
+  }
+
  private:
+  // The share of two outlines, with maps from a common parameter and from `from` for `length` turns
+  // of it, that is longer in one than in the other by more than kMismatchSlope.
+  static double MismatchShare(const OutlineMap& a, const OutlineMap& b, double from,
+                              double length) {
+    double share = 0.0;
+    for (int k = 0; k < kMismatchSteps; ++k) {
+      const double begin = from + length * k / kMismatchSteps;
+      const double end = from + length * (k + 1) / kMismatchSteps;
+      const double on_a = a.At(end) - a.At(begin), on_b = b.At(end) - b.At(begin);
+      if (std::max(on_a, on_b) > kMismatchSlope * std::min(on_a, on_b))
+        share += 0.5 * (on_a + on_b);
+    }
+    return share;
+  }
+
+  // The marks' landmarks at the ends of the arc where most of the mismatch lies.
+  std::vector<int> LandmarksAround(const Mismatch& mismatch) const {
+    std::vector<int> around;
+    double most = 0.0;
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      const int begin = order_[k], end = order_[(k + 1) % order_.size()];
+      const double from = positions_[begin][tree_.root];
+      double length = positions_[end][tree_.root] - from;
+      length -= std::floor(length);
+      if (begin == end) length = 1.0;
+      const double share =
+          MismatchShare(maps_[mismatch.first], maps_[mismatch.second], from, length);
+      if (share <= most) continue;
+      most = share;
+      around = begin == end ? std::vector<int>{begin} : std::vector<int>{begin, end};
+    }
+    return around;
+  }
+
   struct ComparedPair {
     PairWeights weights;
     OutlineMap map;
@@ -95,19 +151,37 @@ class GroupMatching {
   // True when the anchors, two at least, lie turned against each other on the two drawings, so that
   // these cannot both be upright.
   bool AreTurned(int i, int j, const std::vector<Anchor>& anchors) const {
-    if (anchors.size() < 2) return false;
-    const auto count = static_cast<Eigen::Index>(anchors.size());
-    Points on_i(count, 2), on_j(count, 2);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      on_i.row(k) = curves_[i].At(anchors[k].on_a).transpose();
-      on_j.row(k) = curves_[j].At(anchors[k].on_b).transpose();
+    return anchors.size() >= 2 && std::abs(RotationOf(i, j, anchors)) > kUpright;
+  }
+
+  // True when the map goes from one drawing to the other by about a quarter turn.  A half turn is
+  // more often a drawing's own symmetry.
+  bool IsTurned(int i, int j, const OutlineMap& map) const {
+    std::vector<Anchor> places;
+    for (int k = 0; k < kCycleSamples; ++k) {
+      const double position = static_cast<double>(k) / kCycleSamples;
+      places.push_back({position, map.At(position)});
     }
-    on_i.rowwise() -= on_i.colwise().mean().eval();
-    on_j.rowwise() -= on_j.colwise().mean().eval();
-    // The angle of the least-squares rotation.
-    const double cosine = on_i.cwiseProduct(on_j).sum();
-    const double sine = on_i.col(0).dot(on_j.col(1)) - on_i.col(1).dot(on_j.col(0));
-    return std::abs(std::atan2(sine, cosine)) > kUpright;
+    const double rotation = std::abs(RotationOf(i, j, places));
+    return rotation > kUpright && rotation < std::numbers::pi - kUpright;
+  }
+
+  // The angle of the least-squares rotation between the two drawings' places.
+  double RotationOf(int i, int j, const std::vector<Anchor>& anchors) const {
+    Point sum_i = Point::Zero(), sum_j = Point::Zero();
+    for (const Anchor& anchor : anchors) {
+      sum_i += curves_[i].At(anchor.on_a);
+      sum_j += curves_[j].At(anchor.on_b);
+    }
+    const double count = static_cast<double>(anchors.size());
+    double cosine = 0.0, sine = 0.0;
+    for (const Anchor& anchor : anchors) {
+      const Point on_i = curves_[i].At(anchor.on_a) - sum_i / count;
+      const Point on_j = curves_[j].At(anchor.on_b) - sum_j / count;
+      cosine += on_i.dot(on_j);
+      sine += on_i.x() * on_j.y() - on_i.y() * on_j.x();
+    }
+    return std::atan2(sine, cosine);
   }
 
   bool ComparePairs() {
@@ -122,7 +196,8 @@ class GroupMatching {
         if (IsCancelled(progress_)) return false;
         Report(progress_, kCoarseShare * 2.0 * done / (n_ * (n_ - 1.0)));
         const std::vector<Anchor> anchors = MarkedAnchors(i, j);
-        PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight};
+        PairWeights weights{options_.position_weight, 0.0, options_.stretch_weight,
+                            options_.thickness_weight};
         if (AreTurned(i, j, anchors)) weights.position = 0.0;
         CoarseMatch match = MatchCoarsely(curves_[i], curves_[j], anchors, weights);
         if (options_.colour_weight > 0.0 && curves_[i].has_colours() && curves_[j].has_colours()) {
@@ -133,6 +208,14 @@ class GroupMatching {
               options_.max_colour_difference) {
             weights = coloured;
             match = std::move(by_colour);
+          }
+        }
+        if (anchors.empty() && weights.position > 0.0) {
+          const PairWeights turned{0.0, 0.0, options_.stretch_weight, options_.thickness_weight};
+          CoarseMatch freely = MatchCoarsely(curves_[i], curves_[j], {}, turned);
+          if (freely.cost < kTurnedCopy * match.cost && IsTurned(i, j, freely.map)) {
+            weights = turned;
+            match = std::move(freely);
           }
         }
         costs_(i, j) = costs_(j, i) = match.cost;
@@ -151,7 +234,10 @@ class GroupMatching {
   }
 
   OutlineMap Match(int a, int b, const std::vector<Anchor>& anchors) const {
-    return MatchFinely(curves_[a], curves_[b], anchors, Pair(a, b).starts, Pair(a, b).weights).map;
+    const ComparedPair& pair = Pair(a, b);
+    OutlineMap map = MatchFinely(curves_[a], curves_[b], anchors, pair.starts, pair.weights).map;
+    return KeepStrokesTogether(curves_[a], sides_[a], curves_[b], sides_[b], anchors,
+                               std::move(map), pair.weights);
   }
 
   bool FillLandmarks() {
@@ -197,6 +283,7 @@ class GroupMatching {
   const MatchingOptions& options_;
   Progress* const progress_;
   const int n_;
+  const std::vector<StrokeSides> sides_;
 
   std::vector<ComparedPair> pairs_;  // n x n, row i to column j
   Eigen::MatrixXd costs_;
@@ -258,7 +345,10 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
                                         std::span<const Landmark> landmarks,
                                         const MatchingOptions& options, Progress* progress) {
   TRY(CheckCorners(shapes));
-  const std::vector<OutlineCurve> curves = CurvesOf(shapes);
+  std::vector<OutlineCurve> curves = CurvesOf(shapes);
+  if (options.thickness_weight > 0.0) {
+    for (OutlineCurve& curve : curves) curve.MeasureThickness();
+  }
   Marks marks = TRY(PlaceLandmarks(shapes, curves, landmarks, options));
   const std::vector<int> order = CanonicalOrder(shapes, marks);
   for (auto& on : marks.on) on = Reordered(on, order);
@@ -289,6 +379,15 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
     result.outlines[order[k]] = std::move(rows.outlines[k]);
     result.confidence[order[k]] = confidence[k];
     result.proposal.flips[order[k]] = proposal.flips[k];
+  }
+  if (const auto mismatch = matching.FindMismatch()) {
+    const auto [first, second] = std::minmax(order[mismatch->first], order[mismatch->second]);
+    result.mismatch = Mismatch{first, second, mismatch->share, {}};
+    for (const int landmark : mismatch->landmarks) {
+      const auto tuple = std::find(of_tuple.begin(), of_tuple.end(), landmark);
+      result.mismatch->landmarks.push_back(static_cast<int>(tuple - of_tuple.begin()));
+    }
+    std::sort(result.mismatch->landmarks.begin(), result.mismatch->landmarks.end());
   }
   for (const int landmark : of_tuple) {
     result.landmark_rows.push_back(rows.landmark_rows[landmark]);

@@ -33,6 +33,9 @@ struct MatchingOptions {
   double position_weight = 0.15;
   double colour_weight = 0.3;
   double stretch_weight = 0.05;
+  // Weight of ln(thickness ratio)^2.  Thickness tells limbs apart however they are bent and turned,
+  // where position must not.
+  double thickness_weight = 0.0;
   // Colour is used only between drawings whose mean colour difference along the map found with it
   // is below this (RGB in [0, 1]): drawings painted in other colours say nothing by them.  One
   // character's drawings have 0.04 to 0.17, different animals 0.2 to 0.8.
@@ -41,10 +44,28 @@ struct MatchingOptions {
   double max_landmark_distance = 0.05;
 };
 
+// For drawings that may be turned at will: their shapes, thickness and colours are compared, and
+// position only decides between starts that are all but as good.
+inline MatchingOptions ForAnyRotation() {
+  MatchingOptions options;
+  options.position_weight = 0.0;
+  options.thickness_weight = 0.1;
+  return options;
+}
+
 // Drawings that would fit their group better seen in a mirror, left and right exchanged.
 struct FlipProposal {
   std::vector<bool> flips;  // one a drawing; at most half of them
   double gain = 1.0;        // cost of all pairs' matches as they are / with the flips, >= 1
+};
+
+// Two drawings of which much has no counterpart in the other, as where limbs cross: then they
+// follow each other in another order, and no map between the outlines fits.
+struct Mismatch {
+  int first;
+  int second;
+  double share;                // of both outlines, that is squeezed or stretched by more than 4.5
+  std::vector<int> landmarks;  // those at the ends of the arc where most of it lies
 };
 
 // Outlines in correspondence.
@@ -57,6 +78,8 @@ struct MatchedOutlines {
   // Never applied here: a flip mirrors the artwork, and only a person knows.  None is proposed when
   // its gain is below 1.05 or there are landmarks, which say which way round a drawing is.
   FlipProposal proposal;
+  // The worst of them with a share above 0.12, or above 0.1 when there are landmarks to doubt.
+  std::optional<Mismatch> mismatch;
 };
 
 // Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at

@@ -121,7 +121,8 @@ void CheckOrders(const Marks& marks, std::span<const MatchingShape> shapes, Faul
       for (const auto& [a, b] : FindOrderConflicts(one, other)) {
         faults.Add(Field(tuple_of[a], shapes[j].name), "tuples ", tuple_of[a], " and ", tuple_of[b],
                    " follow each other differently along shape '", shapes[i].name,
-                   "' and along shape '", shapes[j].name, "'");
+                   "' and along shape '", shapes[j].name,
+                   "': if limbs cross there, no outline fits both, and one is better left out");
       }
     }
   }

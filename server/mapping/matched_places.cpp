@@ -14,10 +14,19 @@ constexpr double kTurnWindow = 1.0 / 32;  // turns either side, over which an ou
 constexpr int kStartCandidates = 512;     // rows that may be the start, spread evenly
 
 // Where the rows lie along all outlines together: turns from row 0, and 1 when it is reached again.
+// Summed in an order of the outlines' own, so that the caller's decides nothing, not even rounding.
 std::vector<double> MeanPositions(std::span<const Points> outlines) {
+  std::vector<const Points*> sorted;
+  for (const Points& outline : outlines) sorted.push_back(&outline);
+  std::sort(sorted.begin(), sorted.end(), [](const Points* a, const Points* b) {
+    return std::lexicographical_compare(a->data(), a->data() + a->size(), b->data(),
+                                        b->data() + b->size());
+  });
+
   const Eigen::Index n = outlines[0].rows();
   std::vector<double> positions(n + 1, 0.0);
-  for (const Points& outline : outlines) {
+  for (const Points* each : sorted) {
+    const Points& outline = *each;
     const double share = 1.0 / (Perimeter(outline) * static_cast<double>(outlines.size()));
     double length = 0.0;
     for (Eigen::Index k = 0; k < n; ++k) {

@@ -14,7 +14,8 @@ namespace posespace {
 // outlines turn most, a tip or a notch: if that one is right, the start of the matching is.
 //
 // Requires  outlines in correspondence (MatchedOutlines), n >= 3 rows each; count >= 1.
-// Returns   one count x 2 per outline, row k the same place in each, in drawing pixels.
+// Returns   one count x 2 per outline, row k the same place in each, in drawing pixels; depends on
+//           the order of the outlines only in its own.
 std::vector<Points> SampleTogether(std::span<const Points> outlines, int count);
 
 }  // namespace posespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "geometry/polygon.h"
 
@@ -26,6 +27,12 @@ double SpreadOf(const Points& ring, const Point& centroid) {
   }
   return std::sqrt(2.0 * std::numbers::pi * moment / SignedArea(ring));
 }
+
+constexpr int kThicknessSamples = 512;
+constexpr double kDirectionReach = 0.004;  // turns either side, for the direction of the outline
+constexpr double kInwardSpread = 0.35;     // radians either side of straight inward
+constexpr double kLeastThickness = 0.004;  // of the perimeter
+constexpr double kMostThickness = 0.12;
 
 constexpr double kCornerReach = 1e-6;  // turns within which a nearest point is the corner itself
 
@@ -100,6 +107,57 @@ Eigen::MatrixXd OutlineCurve::Features(const std::vector<double>& positions,
   return features;
 }
 
+double OutlineCurve::WayThrough(const Point& from, const Point& direction) const {
+  const auto side = [&](const Point& p) {
+    return direction.x() * (p.y() - from.y()) - direction.y() * (p.x() - from.x());
+  };
+  const double least = kLeastThickness * perimeter_;  // what is nearer is the outline left behind
+  double way = kMostThickness * perimeter_;
+  Point begin = corner(num_corners() - 1);
+  double begin_side = side(begin);
+  for (int k = 0; k < num_corners(); ++k) {
+    const Point end = corner(k);
+    const double end_side = side(end);
+    if ((begin_side > 0.0) != (end_side > 0.0)) {
+      const Point hit = begin + begin_side / (begin_side - end_side) * (end - begin);
+      const double along = direction.dot(hit - from);
+      if (along > least) way = std::min(way, along);
+    }
+    begin = end;
+    begin_side = end_side;
+  }
+  return way;
+}
+
+void OutlineCurve::MeasureThickness() {
+  log_thickness_.assign(kThicknessSamples, 0.0);
+  for (int k = 0; k < kThicknessSamples; ++k) {
+    const double position = static_cast<double>(k) / kThicknessSamples;
+    const Point along = At(position + kDirectionReach) - At(position - kDirectionReach);
+    const double inward = std::atan2(along.x(), -along.y());
+    for (const double angle : {inward - kInwardSpread, inward, inward + kInwardSpread}) {
+      const Point direction(std::cos(angle), std::sin(angle));
+      log_thickness_[k] += std::log(WayThrough(At(position), direction) / perimeter_) / 3.0;
+    }
+  }
+  const double mean =
+      std::accumulate(log_thickness_.begin(), log_thickness_.end(), 0.0) / kThicknessSamples;
+  for (double& thickness : log_thickness_) thickness -= mean;
+}
+
+Eigen::VectorXd OutlineCurve::LogThickness(const std::vector<double>& positions) const {
+  Eigen::VectorXd thickness(static_cast<Eigen::Index>(positions.size()));
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const double sample = (positions[k] - std::floor(positions[k])) * kThicknessSamples;
+    const int before = static_cast<int>(sample) % kThicknessSamples;
+    const double share = sample - std::floor(sample);
+    thickness[static_cast<Eigen::Index>(k)] =
+        (1.0 - share) * log_thickness_[before] +
+        share * log_thickness_[(before + 1) % kThicknessSamples];
+  }
+  return thickness;
+}
+
 Eigen::MatrixXd OutlineCurve::Colours(const std::vector<double>& positions) const {
   Eigen::MatrixXd colours(positions.size(), 3);
   for (std::size_t k = 0; k < positions.size(); ++k) {
@@ -113,7 +171,9 @@ Eigen::MatrixXd OutlineCurve::Colours(const std::vector<double>& positions) cons
 OutlineCurve OutlineCurve::Mirrored() const {
   Points outline = outline_.colwise().reverse();
   outline.col(0) *= -1.0;
-  return {outline, colours_.colwise().reverse()};
+  OutlineCurve mirrored(outline, colours_.colwise().reverse());
+  if (!log_thickness_.empty()) mirrored.MeasureThickness();
+  return mirrored;
 }
 
 }  // namespace posespace

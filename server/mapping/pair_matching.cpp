@@ -22,6 +22,11 @@ constexpr int kStartsKept = 3;
 constexpr int kRecuts = 2;
 constexpr double kLeastRecut = 0.25;  // turns from the old cut to the new
 constexpr int kTurnColumns = 4;       // columns 0, 2, 4, 6 of the features
+constexpr int kStrokePasses = 3;
+constexpr double kStrokeShare = 0.5;  // of an outline that has a place across: then it is a stroke
+constexpr int kSideReach = 16;        // samples of the last pass that a side may move in one more
+constexpr double kSideLimit = 0.06;   // turns that the sides may have slipped
+constexpr double kSidePull = 600.0;   // unlikeness a squared turn of slip
 constexpr double kStartTie = 1.15;    // costs within this ratio do not tell starts apart
 
 // The part of both outlines from one anchor to the next, sampled evenly on each.
@@ -37,13 +42,16 @@ std::vector<double> Samples(double begin, double length, int intervals) {
   return positions;
 }
 
-// Shape and position features, then colours when they count.
+// Shape and position features, then thickness and colours when they count.
 Eigen::MatrixXd FeaturesOf(const OutlineCurve& curve, const std::vector<double>& positions,
                            const PairWeights& weights) {
   Eigen::MatrixXd features = curve.Features(positions, weights.position);
+  if (weights.thickness > 0.0) {
+    features.conservativeResize(Eigen::NoChange, features.cols() + 1);
+    features.rightCols<1>() = std::sqrt(weights.thickness) * curve.LogThickness(positions);
+  }
   if (weights.colour <= 0.0) return features;
-  const auto columns = features.cols();
-  features.conservativeResize(Eigen::NoChange, columns + 3);
+  features.conservativeResize(Eigen::NoChange, features.cols() + 3);
   features.rightCols<3>() = std::sqrt(weights.colour) * curve.Colours(positions);
   return features;
 }
@@ -127,6 +135,47 @@ OutlineMap Closed(std::vector<double> from, std::vector<double> to) {
   from.push_back(from.front() + 1.0);
   to.push_back(to.front() + 1.0);
   return {std::move(from), std::move(to)};
+}
+
+// The alignment of an arc near `map`, with each place of a thin stroke drawn towards the middle
+// between its image and the place across from the image of its opposite side.
+Alignment AlignSides(const OutlineCurve& a, const StrokeSides& sides_a, const OutlineCurve& b,
+                     const StrokeSides& sides_b, const Arc& arc, int intervals,
+                     const OutlineMap& map, const PairWeights& weights) {
+  const std::vector<double> on_a = Samples(arc.begin.on_a, arc.length_a, intervals);
+  const std::vector<double> on_b = Samples(arc.begin.on_b, arc.length_b, intervals);
+  const Eigen::MatrixXd features_a = FeaturesOf(a, on_a, weights);
+  const Eigen::MatrixXd features_b = FeaturesOf(b, on_b, weights);
+
+  AlignmentBand band{intervals, nullptr, 0, std::vector<int>(intervals + 1), 0};
+  band.width = std::min(2 * kSideReach, intervals) + 1;
+  band.stride = band.width;
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(intervals + 1) * band.width);
+  double before = on_b[0];
+  for (int i = 0; i <= intervals; ++i) {
+    double image = map.At(on_a[i]);
+    image += std::round(before - image);
+    if (i == intervals) image = on_b.back();
+    before = image;
+    const double column = (image - arc.begin.on_b) / arc.length_b * intervals;
+    band.low[i] = std::clamp(static_cast<int>(std::lround(column)) - band.width / 2,
+                             i == 0 ? 0 : band.low[i - 1], intervals + 1 - band.width);
+    std::optional<double> target;
+    if (const auto opposite = sides_a.Across(on_a[i])) {
+      if (const auto across = sides_b.Across(map.At(*opposite))) {
+        const double away = *across - image - std::round(*across - image);
+        if (std::abs(away) < kSideLimit) target = image + 0.5 * away;
+      }
+    }
+    for (int j = band.low[i]; j < band.low[i] + band.width; ++j) {
+      const double slip = target ? on_b[j] - *target : 0.0;
+      values.push_back((features_a.row(i) - features_b.row(j)).squaredNorm() +
+                       kSidePull * slip * slip);
+    }
+  }
+  band.values = values.data();
+  return ElasticProgramme(kFineMaxStep, weights.stretch).Align(band);
 }
 
 struct Match {
@@ -253,6 +302,25 @@ FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
   }
   Match refined = match_from({MostSalient(a, b, best->map)}, true);
   return {refined.cost, std::move(refined.map)};
+}
+
+OutlineMap KeepStrokesTogether(const OutlineCurve& a, const StrokeSides& sides_a,
+                               const OutlineCurve& b, const StrokeSides& sides_b,
+                               const std::vector<Anchor>& anchors, OutlineMap map,
+                               const PairWeights& weights) {
+  if (std::min(sides_a.share(), sides_b.share()) < kStrokeShare) return map;
+  const std::vector<Anchor> through =
+      anchors.empty() ? std::vector<Anchor>{{map.from().front(), map.to().front()}} : anchors;
+  for (int pass = 0; pass < kStrokePasses; ++pass) {
+    std::vector<double> from, to;
+    for (const Arc& arc : ArcsBetween(through)) {
+      const int intervals = kRefinement * SamplesOf(arc, kFineSamples);
+      const Alignment alignment = AlignSides(a, sides_a, b, sides_b, arc, intervals, map, weights);
+      AppendKnots(arc, alignment, intervals, from, to);
+    }
+    map = Closed(std::move(from), std::move(to));
+  }
+  return map;
 }
 
 double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map) {

@@ -74,6 +74,7 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
   report.min_angle = MinAngle(result.mesh);
   report.confidence = std::move(matched->confidence);
   result.proposal = std::move(matched->proposal);
+  result.mismatch = matched->mismatch;
   return result;
 }
 

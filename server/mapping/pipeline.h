@@ -2,6 +2,7 @@
 #ifndef POSESPACE_MAPPING_PIPELINE_H_
 #define POSESPACE_MAPPING_PIPELINE_H_
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,8 @@ struct MappingReport {
 struct Mapping {
   CompatibleMesh mesh;
   MappingReport report;
-  FlipProposal proposal;  // as in MatchedOutlines
+  FlipProposal proposal;             // as in MatchedOutlines
+  std::optional<Mismatch> mismatch;  // the same
 };
 
 // N drawings -> one mesh that is valid in all of them (paper, section 3): outlines are matched,

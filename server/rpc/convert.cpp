@@ -13,8 +13,7 @@ namespace posespace {
 namespace {
 
 constexpr std::size_t kTextBytes = 1'024;  // of one warning or message
-constexpr int kDefaultSamples = 64;        // of a suggested matching
-constexpr int kMostSamples = 1'024;
+constexpr int kMostSamples = 1'024;        // of a suggested matching
 
 Error Refusal(ErrorCode code, std::string field, std::string description) {
   return Error{code, field + " " + description, {{field, description}}};
@@ -81,6 +80,19 @@ Result<ShapeSource> PolygonFromProto(const v1::PolygonSource& polygon) {
   }
   source.texture = BytesOf(polygon.texture());
   return ShapeSource(std::move(source));
+}
+
+Result<Rotation> RotationFromProto(v1::Rotation rotation, const std::string& field) {
+  switch (rotation) {
+    case v1::ROTATION_UNSPECIFIED:
+    case v1::ROTATION_UPRIGHT:
+      return Rotation::kUpright;
+    case v1::ROTATION_ANY:
+      return Rotation::kAny;
+    default:
+      return Refusal(ErrorCode::kInvalidOption, field,
+                     "is " + std::to_string(rotation) + ", which is not known here");
+  }
 }
 
 void ToProto(const Point& point, v1::Point* out) {
@@ -157,11 +169,16 @@ std::vector<Correspondence> CorrespondencesFromProto(const v1::SetCorrespondence
   return tuples;
 }
 
-Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request) {
-  const int samples = request.has_samples() ? request.samples() : kDefaultSamples;
-  if (samples >= 1 && samples <= kMostSamples) return samples;
-  return Refusal(ErrorCode::kInvalidOption, "samples",
-                 "is " + std::to_string(samples) + ", not 1 to " + std::to_string(kMostSamples));
+Result<SuggestRequest> SuggestRequestFromProto(const v1::SuggestCorrespondencesRequest& request) {
+  SuggestRequest suggest;
+  if (request.has_samples()) suggest.samples = request.samples();
+  if (suggest.samples < 1 || suggest.samples > kMostSamples) {
+    return Refusal(
+        ErrorCode::kInvalidOption, "samples",
+        "is " + std::to_string(suggest.samples) + ", not 1 to " + std::to_string(kMostSamples));
+  }
+  suggest.rotation = TRY(RotationFromProto(request.rotation(), "rotation"));
+  return suggest;
 }
 
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) {
@@ -179,10 +196,11 @@ Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request) 
   return placements;
 }
 
-BuildRequest BuildRequestFromProto(const v1::BuildOptions& options) {
+Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options) {
   BuildRequest request;
   if (options.has_tolerance()) request.tolerance = options.tolerance();
   if (options.has_target_edge_length()) request.target_edge_length = options.target_edge_length();
+  request.rotation = TRY(RotationFromProto(options.rotation(), "options.rotation"));
   if (options.has_align()) request.align = options.align();
   if (options.has_max_vertices()) request.max_vertices = options.max_vertices();
   return request;

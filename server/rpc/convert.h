@@ -23,13 +23,14 @@ Result<ShapeSource> ShapeSourceFromProto(const v1::PutShapeRequest& request);
 
 std::vector<Correspondence> CorrespondencesFromProto(const v1::SetCorrespondencesRequest& request);
 
-// How many places to sample.  Fails  kInvalidOption (not 1 to 1024).
-Result<int> SamplesFromProto(const v1::SuggestCorrespondencesRequest& request);
+// Fails  kInvalidOption (samples not 1 to 1024, an unknown rotation).
+Result<SuggestRequest> SuggestRequestFromProto(const v1::SuggestCorrespondencesRequest& request);
 
 // Fails  kInvalidOption (no place, a shape placed twice); all faults at once.
 Result<Placements> PlacementsFromProto(const v1::SetPlacementsRequest& request);
 
-BuildRequest BuildRequestFromProto(const v1::BuildOptions& options);
+// Fails  kInvalidOption (an unknown rotation).
+Result<BuildRequest> BuildRequestFromProto(const v1::BuildOptions& options);
 
 void ToProto(const SessionView& view, v1::Session* session);
 void ToProto(const Suggestion& suggestion, v1::SuggestCorrespondencesResponse* response);

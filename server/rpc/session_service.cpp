@@ -151,7 +151,7 @@ grpc::ServerUnaryReactor* SessionService::StartBuild(grpc::CallbackServerContext
                                                      v1::StartBuildResponse* response) {
   return ReplyFrom(pool_, context, "StartBuild", [=, this]() -> Result<void> {
     const auto session = TRY(registry_.Find(request->session_id()));
-    const BuildRequest build = BuildRequestFromProto(request->options());
+    const BuildRequest build = TRY(BuildRequestFromProto(request->options()));
     const BuildStatus status = TRY(session->StartBuild(build, registry_.build_pool()));
     ToProto(status, response->mutable_build());
     response->set_attached(status.attached);

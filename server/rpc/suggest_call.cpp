@@ -36,9 +36,9 @@ void SuggestCall::Work() {
 
 Result<void> SuggestCall::Suggest() {
   auto suggestion = [&]() -> Result<Suggestion> {
-    const int samples = TRY(SamplesFromProto(request_));
+    const SuggestRequest request = TRY(SuggestRequestFromProto(request_));
     if (session_ == nullptr) session_ = TRY(registry_.Find(request_.session_id()));
-    return session_->Suggest(samples, &progress_);
+    return session_->Suggest(request, &progress_);
   }();
   if (suggestion) {
     ToProto(*suggestion, &response_);

@@ -61,6 +61,13 @@ bool IsMarked(const BuildInputs& inputs, std::size_t i) {
          }) >= kEnoughMarks;
 }
 
+// Marked correspondences by their numbers, one or two of them.
+std::string Named(const std::vector<int>& tuples) {
+  return tuples.size() == 1
+             ? "tuple " + std::to_string(tuples[0])
+             : "tuples " + std::to_string(tuples[0]) + " and " + std::to_string(tuples[1]);
+}
+
 // What a person should check in the pictures before trusting the blends.
 std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& inputs) {
   const MappingReport& report = mapping.report;
@@ -76,6 +83,26 @@ std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& i
     warnings.push_back("please check shape '" + inputs.drawings[i]->id +
                        "': it is not clear which part of it is which part of the others; mark "
                        "correspondences");
+  }
+  if (const auto& mismatch = mapping.mismatch) {
+    warnings.push_back(
+        "much of drawings '" + inputs.drawings[mismatch->first]->id + "' and '" +
+        inputs.drawings[mismatch->second]->id + "' (" +
+        std::to_string(std::lround(100.0 * mismatch->share)) +
+        " % of their outlines) has no counterpart in the other" +
+        (mismatch->landmarks.empty() ? "" : ", most of it by " + Named(mismatch->landmarks)) +
+        ": where limbs cross, leave one of these poses out" +
+        (mismatch->landmarks.empty() ? "" : "; else check these marks"));
+  }
+  for (std::size_t t = 0; t < inputs.landmarks.size(); ++t) {
+    const auto& points = inputs.landmarks[t].points;
+    if (points.size() < 2) continue;
+    const auto marked = [](const auto& point) { return point.has_value(); };
+    if (std::count_if(points.begin(), points.end(), marked) != 1) continue;
+    const auto only = std::find_if(points.begin(), points.end(), marked) - points.begin();
+    warnings.push_back(Named({static_cast<int>(t)}) + " marks only shape '" +
+                       inputs.drawings[only]->id +
+                       "': that makes its place a vertex, but does not say what corresponds to it");
   }
   if (report.steiner_vertices > kManySteinerVertices) {
     warnings.push_back("please check the matching: the drawings needed " +

@@ -14,6 +14,7 @@ void AddOptions(const MappingOptions& options, Digest& digest) {
   digest.Add(options.matching.position_weight)
       .Add(options.matching.colour_weight)
       .Add(options.matching.stretch_weight)
+      .Add(options.matching.thickness_weight)
       .Add(options.matching.max_colour_difference)
       .Add(options.matching.max_landmark_distance);
   digest.Add(options.simplification.tolerance).Add(options.simplification.min_corner_angle);

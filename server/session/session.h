@@ -19,12 +19,22 @@
 
 namespace posespace {
 
+// How drawings may be turned against each other; see Rotation in session_service.proto.
+enum class Rotation { kUpright, kAny };
+
 // What a build may vary; see BuildOptions in session_service.proto.
 struct BuildRequest {
   double tolerance = 0.03;               // 0.001 .. 0.2
   double target_edge_length = 0.08;      // 0.02 .. 1
   bool align = true;                     // inner vertices to what is drawn there
   std::optional<int> max_vertices = {};  // of the mesh, 3 .. Limits::max_mesh_vertices, the default
+  Rotation rotation = Rotation::kUpright;
+};
+
+// What a look at the matching may vary; see SuggestCorrespondencesRequest.
+struct SuggestRequest {
+  int samples = 64;  // 1 .. 1024
+  Rotation rotation = Rotation::kUpright;
 };
 
 // What automatic matching would do with a session's drawings and marks.
@@ -102,10 +112,10 @@ class Session {
   // Fails  as CheckPlaced and CheckPlacements (placements.h); kEtagMismatch.
   Result<void> SetPlacements(Placements placements, const std::string& etag);
 
-  // What a build would match, at `samples` places; nothing is changed.  Runs on the caller's
+  // What a build would match; nothing is changed.  Runs on the caller's
   // thread, outside the locks, as long as a build's matching. Fails  kNoShapes, kSessionNotFound
   // (closed), and as MatchBoundaries.
-  Result<Suggestion> Suggest(int samples, Progress* progress) const;
+  Result<Suggestion> Suggest(const SuggestRequest& request, Progress* progress) const;
 
   // Starts a build on `pool`, or attaches to the running or finished one of the same inputs.  A
   // build of other inputs cancels a running one; a failed or cancelled one is tried again.

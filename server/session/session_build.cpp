@@ -26,6 +26,7 @@ Result<MappingOptions> OptionsOf(const BuildRequest& request, const Limits& limi
   TRY(CheckRange("options.tolerance", request.tolerance, 0.001, 0.2));
   TRY(CheckRange("options.target_edge_length", request.target_edge_length, 0.02, 1.0));
   MappingOptions options;
+  options.matching = MatchingOptionsOf(request.rotation);
   options.simplification.tolerance = request.tolerance;
   options.improvement.target_edge_length = request.target_edge_length;
   const int max_vertices = request.max_vertices.value_or(limits.max_mesh_vertices);

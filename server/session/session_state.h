@@ -119,6 +119,9 @@ struct Session::State {
 
 std::string EtagOf(const std::string& nonce, std::int64_t version);
 
+// How drawings are matched that may be turned so.
+MatchingOptions MatchingOptionsOf(Rotation rotation);
+
 // Where the drawings `ids` lie when `placements` are set, or by default when they are empty.
 Placements PlacementsOrDefault(const Placements& placements, std::span<const std::string> ids);
 

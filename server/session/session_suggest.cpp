@@ -7,7 +7,11 @@
 
 namespace posespace {
 
-Result<Suggestion> Session::Suggest(int samples, Progress* progress) const {
+MatchingOptions MatchingOptionsOf(Rotation rotation) {
+  return rotation == Rotation::kAny ? ForAnyRotation() : MatchingOptions();
+}
+
+Result<Suggestion> Session::Suggest(const SuggestRequest& request, Progress* progress) const {
   Suggestion suggestion;
   std::vector<std::shared_ptr<const Drawing>> drawings;
   std::vector<Landmark> landmarks;
@@ -22,10 +26,11 @@ Result<Suggestion> Session::Suggest(int samples, Progress* progress) const {
   if (drawings.empty()) {
     return Error{ErrorCode::kNoShapes, "session '" + id_ + "' has no drawing to match", {}};
   }
-  auto matched = TRY(MatchBoundaries(MatchingShapesOf(drawings), landmarks, {}, progress));
+  auto matched = TRY(MatchBoundaries(MatchingShapesOf(drawings), landmarks,
+                                     MatchingOptionsOf(request.rotation), progress));
   suggestion.confidence = std::move(matched.confidence);
   suggestion.proposal = std::move(matched.proposal);
-  suggestion.arcs = SampleTogether(matched.outlines, samples);
+  suggestion.arcs = SampleTogether(matched.outlines, request.samples);
   return suggestion;
 }
 

@@ -44,6 +44,18 @@ def test_it_names_the_drawing_that_faces_the_other_way(waves):
     assert "--session waves --flip b" in said.stdout
 
 
+def test_drawings_that_may_be_turned_at_will_are_matched_by_suggest_and_built(waves, tmp_path):
+    service, files, _ = waves
+    upright = answer(*service, "suggest", "waves")
+    turned = answer(*service, "suggest", "waves", "--rotation", "any")
+    assert turned["confidence"] != upright["confidence"]
+    said = [
+        answer(*service, "build", *files[:2], "--rotation", rotation, "--out", tmp_path / rotation)
+        for rotation in ("upright", "any")
+    ]
+    assert said[0]["revision"] != said[1]["revision"]
+
+
 def test_its_document_is_what_docs_say_and_its_picture_shows_every_drawing(waves):
     service, _, folder = waves
     said = answer(*service, "suggest", "waves", "-o", folder / "matching.png")

@@ -126,3 +126,67 @@ def test_marks_move_with_a_drawing_that_is_flipped(session):
     (moved,) = session.state().correspondences
     assert moved["b"] == pytest.approx((2 * middle - x, y))
     session.build()
+
+
+def lopsided(turn: float) -> np.ndarray:
+    """A ring without any symmetry, turned by so many radians."""
+    angle = np.linspace(0, 2 * np.pi, 120, endpoint=False)
+    radius = 60 + 22 * np.sin(2 * angle) + 15 * np.sin(3 * angle + 1)
+    return 100 + np.stack([radius * np.cos(angle + turn), radius * np.sin(angle + turn)], axis=1)
+
+
+def test_drawings_that_may_be_turned_at_will_are_matched_by_their_shapes_alone(session):
+    turn = 2.9
+    session.put_shape("a", polygon=lopsided(0))
+    session.put_shape("b", polygon=lopsided(turn))
+    found = session.suggest(rotation="any")
+    back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    assert np.abs((found.arcs["b"] - 100) @ back - (found.arcs["a"] - 100)).max() < 3
+    report = session.build(rotation="any")
+    assert report.confidence["b"] > 0.5
+    assert session.build().revision != report.revision
+
+
+def test_an_unknown_rotation_is_refused(session):
+    session.put_shape("a", polygon=star())
+    with pytest.raises(posespace.InvalidArgument, match="rotation"):
+        session.suggest(rotation="sideways")
+
+
+def test_the_order_of_upload_changes_nothing_but_labels(client, session):
+    other = client.create_session()
+    for target, names in ((session, "abc"), (other, "cab")):
+        for name in names:
+            target.put_shape(name, image=figure(**WAVES[name]))
+    one, two = session.suggest(), other.suggest()
+    assert one.confidence == two.confidence and one.starts == two.starts
+    assert one.flips == two.flips and one.flip_gain == two.flip_gain
+    for name in "abc":
+        assert np.array_equal(one.arcs[name], two.arcs[name])
+    other.delete()
+
+
+def test_a_mark_of_one_drawing_is_taken_and_the_build_says_that_it_ties_nothing(session):
+    for name in "ab":
+        session.put_shape(name, polygon=star())
+    place = tuple(star()[0])
+    session.set_correspondences([{"a": place, "b": place}, {"b": tuple(star()[4])}])
+    (warning,) = [w for w in session.build().warnings if "tuple" in w]
+    assert warning.startswith("tuple 1 marks only shape 'b'")
+
+
+def spiked(x: float) -> np.ndarray:
+    """A block with a long spike at x."""
+    return np.array(
+        [(0, 0), (100, 0), (100, 40), (x + 5, 40), (x, 140), (x - 5, 40), (0, 40)], dtype=float
+    )
+
+
+def test_marks_that_leave_much_without_counterpart_are_named(session):
+    session.put_shape("left", polygon=spiked(15))
+    session.put_shape("right", polygon=spiked(85))
+    marks = [(10, 40), (20, 40), (80, 40), (90, 40)]
+    session.set_correspondences([{"left": mark, "right": mark} for mark in marks])
+    (warning,) = [w for w in session.build().warnings if "tuples" in w]
+    assert "'left' and 'right'" in warning
+    assert "tuples 0 and 1" in warning or "tuples 2 and 3" in warning

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -346,6 +347,23 @@ TEST_F(ClientTest, SuggestsMatchesAndKeepsAcceptedFlips) {
   EXPECT_EQ(after.flip_gain, 1.0);
   EXPECT_GT(after.confidence.at("c"), 0.5);
   EXPECT_EQ(after.arcs.at("a").size(), 64u);
+}
+
+TEST_F(ClientTest, MatchesDrawingsThatMayBeTurnedAtWill) {
+  Session session = client_.CreateSession();
+  // The letter L, and turned by half a turn.
+  const Ring letter = {{0, 0}, {20, 0}, {20, 80}, {70, 80}, {70, 100}, {0, 100}};
+  Ring turned = letter;
+  for (Point& point : turned) point = {70 - point.x, 100 - point.y};
+  session.PutShape("a", PolygonSource{.outer = letter});
+  session.PutShape("b", PolygonSource{.outer = turned});
+  const Suggestion found = session.Suggest(32, Rotation::kAny);
+  for (std::size_t k = 0; k < 32; ++k) {
+    const Point a = found.arcs.at("a")[k], b = found.arcs.at("b")[k];
+    EXPECT_LT(std::hypot(70 - a.x - b.x, 100 - a.y - b.y), 1.0) << k;
+  }
+  const std::string upright = session.Build().revision;
+  EXPECT_NE(session.Build({.rotation = Rotation::kAny}).revision, upright);
 }
 
 TEST_F(ClientTest, TellsWhatAlignmentGained) {

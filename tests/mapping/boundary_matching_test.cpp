@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "tests/mapping/articulated_figures.h"
 #include "tests/mapping/matching_cases.h"
 #include "tests/mapping/rings.h"
 #include "tests/support/points.h"
@@ -66,6 +68,57 @@ TEST(MatchBoundaries, FollowsTurnedDrawingsWhenPositionSaysNothing) {
     const std::vector<Points> outlines = {figure, Turned(Bent(figure, 0.05, seed), 2.0 + seed)};
     const MatchedOutlines match = Matched(ShapesOf(outlines), {}, options);
     EXPECT_LT(MeanError(match, outlines, 0, 1), 0.01) << seed;
+  }
+}
+
+TEST(MatchBoundaries, SeesThatADrawingIsACopyTurnedByAQuarter) {
+  for (const double turn : {1.2, 1.6, -1.6, 2.0}) {
+    const Points figure = Figure(120, 5, 100.0, 3);
+    const std::vector<Points> outlines = {figure, Turned(Bent(figure, 0.01, 1), turn)};
+    EXPECT_LT(MeanError(Matched(ShapesOf(outlines)), outlines, 0, 1), 0.01) << turn;
+  }
+}
+
+TEST(MatchBoundaries, FollowsArticulatedPairsAtAnyRotationFromAnyStart) {
+  constexpr int kPairs = 60;
+  constexpr double kWrong = 0.03;  // turns; a start at another limb is off by 0.2
+  int right = 0;
+  double sum = 0.0;
+  for (int seed = 0; seed < kPairs; ++seed) {
+    Random random(seed);
+    const std::vector<Points> poses = ArticulatedPoses(random, 2);
+    const Points turned = Turned(poses[1], 2.0 * std::numbers::pi * Uniform(random));
+    const int start = static_cast<int>(Uniform(random) * static_cast<double>(turned.rows()));
+    const MatchedOutlines match =
+        Matched(ShapesOf({poses[0], StartedAt(turned, start)}), {}, ForAnyRotation());
+    const double error = MeanError(match, {poses[0], turned}, 0, 1);
+    if (error >= kWrong) continue;
+    ++right;
+    sum += error;
+  }
+  EXPECT_GE(right, 0.95 * kPairs);
+  EXPECT_LE(sum / right, 0.002);
+}
+
+TEST(MatchBoundaries, FindsTheKnownCorrespondenceOfGlyphMastersUprightAndTurned) {
+  for (const bool turned : {false, true}) {
+    double sum = 0.0;
+    int pairs = 0;
+    for (int seed = 0; seed < 10; ++seed) {
+      Random random(seed);
+      std::vector<Points> masters = GlyphMasters(random, 3);
+      if (turned) masters[1] = Turned(masters[1], 6.0 * Uniform(random));
+      const MatchedOutlines match =
+          Matched(ShapesOf(masters), {}, turned ? ForAnyRotation() : MatchingOptions());
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          if (i == j) continue;
+          sum += MeanError(match, masters, i, j);
+          ++pairs;
+        }
+      }
+    }
+    EXPECT_LE(sum / pairs, 0.01) << (turned ? "turned" : "upright");
   }
 }
 
@@ -172,6 +225,29 @@ TEST(MatchBoundaries, ProposesNoFlipOfDrawingsThatFaceAlikeOrAreMarked) {
     EXPECT_THAT(match.proposal.flips, ElementsAre(false, false, false));
     EXPECT_EQ(match.proposal.gain, 1.0);
   }
+}
+
+TEST(MatchBoundaries, SaysWhichDrawingsHaveMuchWithoutCounterpart) {
+  // The same block with a long spike at its left and at its right, and marks that keep to the
+  // block.
+  const Points left = PointsOf("0 0, 100 0, 100 40, 20 40, 15 140, 10 40, 0 40");
+  const Points right = PointsOf("0 0, 100 0, 100 40, 90 40, 85 140, 80 40, 0 40");
+  std::vector<Landmark> marks;
+  for (const double x : {10.0, 20.0, 80.0, 90.0}) {
+    marks.push_back({{Point(x, 40), Point(x, 40), Point(x, 40)}});
+  }
+  const MatchedOutlines match = Matched(ShapesOf({left, left, right}), marks);
+  ASSERT_TRUE(match.mismatch.has_value());
+  EXPECT_EQ(match.mismatch->second, 2);
+  EXPECT_GT(match.mismatch->share, 0.3);
+  EXPECT_LT(match.mismatch->share, 0.9);
+  EXPECT_THAT(match.mismatch->landmarks, testing::AnyOf(ElementsAre(0, 1), ElementsAre(2, 3)));
+}
+
+TEST(MatchBoundaries, FindsACounterpartForEverythingInBentCopies) {
+  const Points figure = Figure(120, 5, 100.0, 8);
+  EXPECT_FALSE(Matched(ShapesOf({figure, Bent(figure, 0.08, 1), Bent(figure, 0.08, 2)}))
+                   .mismatch.has_value());
 }
 
 TEST(MatchBoundaries, StopsWhenCancelledBeforeOrOnTheWay) {

@@ -34,6 +34,16 @@ TEST(SampleTogether, SpacesPlacesEvenlyAlongCopies) {
   }
 }
 
+TEST(SampleTogether, DoesNotDependOnTheOrderOfTheOutlines) {
+  const Points figure = Figure(80, 5, 100.0, 4);
+  const std::vector<Points> outlines = {figure, Bent(figure, 0.1, 1), Bent(figure, 0.1, 2)};
+  const auto places = SampleTogether(outlines, 50);
+  const auto again = SampleTogether(std::vector<Points>{outlines[2], outlines[0], outlines[1]}, 50);
+  EXPECT_EQ(again[0], places[2]);
+  EXPECT_EQ(again[1], places[0]);
+  EXPECT_EQ(again[2], places[1]);
+}
+
 TEST(SampleTogether, GivesASinglePlace) {
   const auto places = SampleTogether(std::vector<Points>{PointsOf("0 0, 4 0, 0 3")}, 1);
   EXPECT_EQ(places[0].rows(), 1);

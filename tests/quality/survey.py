@@ -4,8 +4,8 @@
     build/venv/bin/python tests/quality/survey.py [--out DIR] [--sheets] [--thorough]
                                                   [--tighten | --accept] [GROUP ...]
 
-Leaves DIR/quality.md and, with --sheets, DIR/GROUP.png; see contact_sheets.py.  DIR is
-build/quality unless told otherwise.
+Leaves DIR/quality.md, DIR/confidence.md and, with --sheets, DIR/GROUP.png; see
+contact_sheets.py.  DIR is build/quality unless told otherwise.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ import posespace
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
 
+import judged_groups
 import quality_bounds
 from contact_sheets import contact_sheet
 from families import generated_groups
 from quality_table import Group, Row, line, measure, table
-from quality_targets import Survey, foot, pair_errors
+from quality_targets import REAL, Survey, foot, pair_errors
 from real_groups import ROOT, all_groups
 
 OUT = ROOT / "build/quality"
@@ -35,6 +36,8 @@ def document(survey: Survey) -> str:
 def write(survey: Survey, folder: Path = OUT) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "quality.md").write_text(document(survey))
+    confidence = {row.name: row.values["confidence"] for row in survey.rows if row.kind in REAL}
+    (folder / "confidence.md").write_text(judged_groups.table(confidence))
 
 
 def store_bounds(survey: Survey, whole: bool, accept: bool) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import posespace
 import pytest
 from exact_mesh_checks import assert_valid_in_every_drawing
+from judged_groups import DOUBTFUL, verdicts
 from measures import random_weights
 from numpy.typing import NDArray
 from outlines import inside
@@ -121,3 +122,30 @@ def test_in_betweens_have_few_folds(built):
         built.blend(weights=dict(zip(mesh.shape_ids, row.tolist(), strict=True))) for row in weights
     ]
     assert sum(frame.folds for frame in frames) <= 0.01 * len(frames) * len(mesh.triangles)
+
+
+def test_every_group_has_been_judged():
+    assert set(verdicts()) >= {group.name for group in GROUPS}
+
+
+@pytest.fixture
+def confidence(measured) -> dict[str, float]:
+    """Group -> that of its least clear drawing, as the builds above report it."""
+    found = {row.name: row.values["confidence"] for row in measured.rows}
+    if not all(group.name in found for group in GROUPS):
+        pytest.skip("not all groups were measured")
+    return found
+
+
+@pytest.mark.skipif(not GROUPS, reason=ABSENT)
+def test_doubt_finds_at_least_nine_of_ten_groups_that_are_not_right(confidence):
+    wrong = [name for name, verdict in verdicts().items() if verdict != "right"]
+    missed = [name for name in wrong if confidence[name] >= DOUBTFUL]
+    assert len(missed) <= 0.1 * len(wrong), missed
+
+
+@pytest.mark.skipif(not GROUPS, reason=ABSENT)
+def test_doubt_falls_on_at_most_one_of_five_right_groups(confidence):
+    right = [name for name, verdict in verdicts().items() if verdict == "right"]
+    needless = [name for name in right if confidence[name] < DOUBTFUL]
+    assert len(needless) <= 0.2 * len(right), needless

@@ -111,19 +111,25 @@ TEST(Placements, RefuseAMissingPlaceAndAShapePlacedTwice) {
 }
 
 TEST(BuildOptions, AreTheDefaultsWhereAbsent) {
-  EXPECT_EQ(BuildRequestFromProto({}).tolerance, 0.03);
-  EXPECT_EQ(BuildRequestFromProto({}).target_edge_length, 0.08);
-  EXPECT_TRUE(BuildRequestFromProto({}).align);
-  EXPECT_EQ(BuildRequestFromProto({}).max_vertices, std::nullopt);
+  EXPECT_EQ(BuildRequestFromProto({})->tolerance, 0.03);
+  EXPECT_EQ(BuildRequestFromProto({})->target_edge_length, 0.08);
+  EXPECT_TRUE(BuildRequestFromProto({})->align);
+  EXPECT_EQ(BuildRequestFromProto({})->rotation, Rotation::kUpright);
+  EXPECT_EQ(BuildRequestFromProto({})->max_vertices, std::nullopt);
   v1::BuildOptions options;
   options.set_tolerance(0.05);
   options.set_target_edge_length(0.5);
+  EXPECT_EQ(BuildRequestFromProto(options)->tolerance, 0.05);
+  EXPECT_EQ(BuildRequestFromProto(options)->target_edge_length, 0.5);
   options.set_align(false);
   options.set_max_vertices(100);
-  EXPECT_EQ(BuildRequestFromProto(options).tolerance, 0.05);
-  EXPECT_EQ(BuildRequestFromProto(options).target_edge_length, 0.5);
-  EXPECT_FALSE(BuildRequestFromProto(options).align);
-  EXPECT_EQ(BuildRequestFromProto(options).max_vertices, 100);
+  EXPECT_EQ(BuildRequestFromProto(options)->max_vertices, 100);
+  EXPECT_FALSE(BuildRequestFromProto(options)->align);
+  options.set_rotation(v1::ROTATION_ANY);
+  EXPECT_EQ(BuildRequestFromProto(options)->rotation, Rotation::kAny);
+  options.set_rotation(static_cast<v1::Rotation>(7));
+  EXPECT_THAT(BuildRequestFromProto(options),
+              FailsWith(ErrorCode::kInvalidOption, "options.rotation"));
 }
 
 TEST(SessionView, TravelsWhole) {

@@ -12,7 +12,7 @@ from posespace import messages
 from posespace.building import OnProgress, build_and_wait
 from posespace.channel import Channel
 from posespace.errors import InvalidArgument
-from posespace.messages import Foreground, Place
+from posespace.messages import Foreground, Place, Rotation
 from posespace.pictures import Picture, file_bytes, picture_bytes
 from posespace.results import Build, BuildReport, SessionState, Shape, Suggestion
 from posespace.v1 import session_service_pb2
@@ -162,7 +162,8 @@ class Authoring:
 
             session.set_correspondences([{"stand": (40, 12), "jump": (52, 9)}, ...])
 
-        Each tuple marks one place of the character in any of the drawings, in drawing pixels.
+        Each tuple marks one place of the character in any of the drawings, in drawing pixels.  A
+        mark in a single drawing makes its place a vertex and ties it to nothing: builds warn of it.
 
         Raises InvalidArgument with every fault in `fields` (LANDMARK_OFF_OUTLINE,
         LANDMARKS_OUT_OF_ORDER, ...), NotFound, and Conflict when `etag` is given and outdated.
@@ -178,7 +179,13 @@ class Authoring:
         changed = self._channel.call(self._channel.sessions.SetCorrespondences, request)
         return messages.session_state(changed.session)
 
-    def suggest(self, *, samples: int | None = None, timeout: float = _MATCHING) -> Suggestion:
+    def suggest(
+        self,
+        *,
+        samples: int | None = None,
+        rotation: Rotation = "upright",
+        timeout: float = _MATCHING,
+    ) -> Suggestion:
         """What automatic matching would do with the drawings and marks as they are.
 
             found = session.suggest()
@@ -189,14 +196,18 @@ class Authoring:
         Nothing is changed: flips are proposals, which are wrong for a drawing that only looks as if
         it faced the other way.
 
-        samples  Places of the outline to answer in `arcs`, 1 to 1024; 64 by default.
-        timeout  Seconds to wait.
+        samples   Places of the outline to answer in `arcs`, 1 to 1024; 64 by default.
+        rotation  As in `build`.
+        timeout   Seconds to wait.
 
         Raises NotBuilt (NO_SHAPES) without drawings, InvalidArgument when drawings or marks
         contradict each other, DeadlineExceeded.
         """
         request = messages.make(
-            session_service_pb2.SuggestCorrespondencesRequest, session_id=self._id, samples=samples
+            session_service_pb2.SuggestCorrespondencesRequest,
+            session_id=self._id,
+            samples=samples,
+            rotation=messages.rotation(rotation),
         )
         suggest = self._channel.sessions.SuggestCorrespondences
         return messages.suggestion(self._channel.call(suggest, request, timeout=timeout))
@@ -231,6 +242,7 @@ class Authoring:
         tolerance: float | None = None,
         target_edge_length: float | None = None,
         max_vertices: int | None = None,
+        rotation: Rotation = "upright",
         align: bool | None = None,
         on_progress: OnProgress | None = None,
         timeout: float | None = None,
@@ -244,6 +256,8 @@ class Authoring:
         target_edge_length  Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
         max_vertices        Of the mesh, 3 to what the service allows (8,000 unless it was started
                             with another limit), which is the default: refinement stops there.
+        rotation            "upright": what lies in the same place of two drawings is probably the
+                            same.  "any": drawings may be turned at will.
         align               Whether inner vertices move so that what is drawn inside corresponds,
                             eyes to eyes; report.ghost_loss says what it gained.  True by default.
         on_progress         Called with the stage's name and the fraction done, which never falls.
@@ -260,7 +274,7 @@ class Authoring:
         cancels or replaces the build, ResourceExhausted when the queue stays full for `timeout`,
         DeadlineExceeded after it.
         """
-        request = self._build_request(tolerance, target_edge_length, max_vertices, align)
+        request = self._build_request(tolerance, target_edge_length, max_vertices, rotation, align)
         return build_and_wait(self._channel, request, on_progress, timeout)
 
     def start_build(
@@ -269,10 +283,11 @@ class Authoring:
         tolerance: float | None = None,
         target_edge_length: float | None = None,
         max_vertices: int | None = None,
+        rotation: Rotation = "upright",
         align: bool | None = None,
     ) -> Build:
         """Starts building as `build` does and returns at once; `state().build` says how it goes."""
-        request = self._build_request(tolerance, target_edge_length, max_vertices, align)
+        request = self._build_request(tolerance, target_edge_length, max_vertices, rotation, align)
         return messages.build(self._channel.call(self._channel.sessions.StartBuild, request).build)
 
     def cancel_build(self) -> None:
@@ -287,6 +302,7 @@ class Authoring:
         tolerance: float | None,
         target_edge_length: float | None,
         max_vertices: int | None,
+        rotation: Rotation,
         align: bool | None,
     ) -> session_service_pb2.StartBuildRequest:
         options = messages.make(
@@ -294,6 +310,7 @@ class Authoring:
             tolerance=tolerance,
             target_edge_length=target_edge_length,
             max_vertices=max_vertices,
+            rotation=messages.rotation(rotation),
             align=align,
         )
         return session_service_pb2.StartBuildRequest(session_id=self._id, options=options)

@@ -20,6 +20,7 @@ from posespace.v1 import geometry_pb2, pose_service_pb2, session_service_pb2
 T = TypeVar("T")
 M = TypeVar("M", bound=Message)
 
+Rotation = Literal["upright", "any"]
 BlendMethod = Literal["rigid", "linear", "paper"]
 ShearLimit = Literal["band", "hermite", "off"]
 StretchBlend = Literal["linear", "log", "metric"]
@@ -46,6 +47,10 @@ _STRETCHES = {
     "linear": pose_service_pb2.STRETCH_BLEND_LINEAR,
     "log": pose_service_pb2.STRETCH_BLEND_LOG,
     "metric": pose_service_pb2.STRETCH_BLEND_METRIC,
+}
+_ROTATIONS = {
+    "upright": session_service_pb2.ROTATION_UPRIGHT,
+    "any": session_service_pb2.ROTATION_ANY,
 }
 _FOREGROUNDS = {
     "alpha": session_service_pb2.FOREGROUND_ALPHA,
@@ -85,6 +90,11 @@ def choice(name: str, value: str | None, choices: Mapping[Any, T]) -> T:
         raise InvalidArgument(
             f"{name} is {value!r}, not one of {words}", reason="INVALID_OPTION"
         ) from None
+
+
+def rotation(name: str) -> session_service_pb2.Rotation:
+    """The wire's number of a way to be turned."""
+    return choice("rotation", name, _ROTATIONS)
 
 
 def foreground(name: str) -> session_service_pb2.Foreground:

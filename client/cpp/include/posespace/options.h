@@ -121,12 +121,19 @@ struct BlendOptions {
   friend bool operator==(const BlendOptions&, const BlendOptions&) = default;
 };
 
+// How drawings may be turned against each other.
+enum class Rotation {
+  kUpright,  // what lies in the same place of two drawings is probably the same
+  kAny,      // at will: only their shapes are compared, and colours
+};
+
 struct BuildOptions {
   // Farthest the mesh outline may lie from the drawing's, relative to the square root of its area,
   // 0.001 to 0.2; 0.03 by default.
   std::optional<double> tolerance = {};
   // Of mesh edges, in the same unit, 0.02 to 1; 0.08 by default.
   std::optional<double> target_edge_length = {};
+  Rotation rotation = Rotation::kUpright;
   // Most vertices of the mesh, 3 to what the service allows (8,000 unless set otherwise), which is
   // the default: refinement stops there.  Drawings that need more even so are refused.
   std::optional<int> max_vertices = {};

@@ -122,10 +122,11 @@ class Session {
 
   // What automatic matching would do with the drawings and marks as they are; nothing is changed.
   // `samples` places of the outline are answered, 1 to 1024; 64 by default.  Takes as long as a
-  // build's matching, for which it waits a minute beyond the client's timeout.
+  // build's matching, for which it waits a minute beyond the client's timeout.  `rotation` is as in
+  // BuildOptions.
   // Throws kNotBuilt (NO_SHAPES) without drawings, kInvalidArgument when drawings or marks
   // contradict each other.
-  Suggestion Suggest(std::optional<int> samples = {}) const;
+  Suggestion Suggest(std::optional<int> samples = {}, Rotation rotation = Rotation::kUpright) const;
 
   // Places every drawing in pose space; a built session follows at once, with a new revision.  None
   // at all returns to the default, the unit circle in the order of upload.

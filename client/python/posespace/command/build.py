@@ -95,6 +95,12 @@ def add(commands: Commands) -> None:
         "--max-vertices", metavar="N", type=int, help="most vertices of the mesh; default 8000"
     )
     parser.add_argument(
+        "--rotation",
+        choices=["upright", "any"],
+        default="upright",
+        help="whether drawings stand upright (the default) or may be turned at will",
+    )
+    parser.add_argument(
         "--no-align",
         action="store_true",
         help="leave inner vertices where they are, instead of moving them to what is drawn there",
@@ -120,6 +126,7 @@ def run(client: Client, arguments: argparse.Namespace) -> None:
                 tolerance=arguments.tolerance,
                 target_edge_length=arguments.target_edge_length,
                 max_vertices=arguments.max_vertices,
+                rotation=arguments.rotation,
                 align=False if arguments.no_align else None,
                 on_progress=progress.show,
             )

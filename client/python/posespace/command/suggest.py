@@ -33,13 +33,19 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "-o", "--out", metavar="FILE.png", type=Path, help="draw the matched outlines"
     )
+    parser.add_argument(
+        "--rotation",
+        choices=["upright", "any"],
+        default="upright",
+        help="whether drawings stand upright (the default) or may be turned at will",
+    )
 
 
 def run(client: Client, arguments: argparse.Namespace) -> None:
     session = client.session(arguments.session)
     with Progress() as progress:
         progress.show("matching")
-        found = session.suggest(samples=256)
+        found = session.suggest(samples=256, rotation=arguments.rotation)
         if arguments.out is not None:
             outlines = {shape.id: shape.outline[0] for shape in session.shapes()}
             with whole_file(arguments.out) as file:
