@@ -23,6 +23,7 @@ namespace {
 // Decimation takes most vertices out of an overlay: larger ones than the limit are tried.
 constexpr std::int64_t kMaxOverlay = 32'000;
 constexpr std::int64_t kMaxDecimation = 4;
+constexpr int kLargeOverlay = 1'000;  // Steiner vertices: decimating several of these takes long
 
 std::string Name(std::size_t drawing) { return "drawing " + std::to_string(drawing); }
 
@@ -155,6 +156,18 @@ Result<Triangulation> OverlayAndDecimate(std::span<const Points> outlines,
   return result;
 }
 
+// The overlay of the outlines from number `first` on, going round.
+Result<Triangulation> OverlayFrom(std::size_t first, std::span<const Points> outlines,
+                                  std::int64_t max_vertices, std::uint64_t seed,
+                                  Progress* progress) {
+  std::vector<Points> turned(outlines.begin(), outlines.end());
+  std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(first), turned.end());
+  Triangulation result = TRY(OverlayAndDecimate(turned, max_vertices, seed, progress));
+  std::vector<Points>& poses = result.mesh.poses;
+  std::rotate(poses.begin(), poses.end() - static_cast<std::ptrdiff_t>(first), poses.end());
+  return result;
+}
+
 // Slivers first: they are worse than Steiner vertices, where those do away with them.
 bool IsBetter(const Triangulation& a, const Triangulation& b) {
   const double sharpness_a = SharpestOf(a.mesh), sharpness_b = SharpestOf(b.mesh);
@@ -176,9 +189,15 @@ Result<Triangulation> WithSteiner(std::span<const Points> outlines, bool may_cut
     if (cut) best = std::move(*cut);
     Report(progress, 0.6);
   }
-  auto overlaid = OverlayAndDecimate(outlines, max_vertices, options.seed, progress);
-  if (!overlaid && !best) return std::move(overlaid).error();
-  if (overlaid && (!best || IsBetter(*overlaid, *best))) best = std::move(*overlaid);
+  // The outline that is triangulated first shapes the chords of all others: each may be that one.
+  for (std::size_t first = 0; first < outlines.size(); ++first) {
+    auto overlaid = OverlayFrom(first, outlines, max_vertices, options.seed, progress);
+    if (!overlaid && !best) return std::move(overlaid).error();
+    if (!overlaid) break;
+    const bool is_large = overlaid->before_decimation > kLargeOverlay;
+    if (!best || IsBetter(*overlaid, *best)) best = std::move(*overlaid);
+    if (is_large) break;
+  }
   if (best->mesh.num_vertices() > options.max_vertices) {
     return Error{ErrorCode::kMeshTooLarge,
                  "the outlines have so little in common that a mesh of all " +

@@ -34,8 +34,9 @@ struct Triangulation {
 // mesh: first a dynamic programme that finds the triangulation without Steiner vertices whose
 // smallest angle is largest, if there is one.  Otherwise the outlines are cut in parts that have
 // one (cut_triangulation.h, the paper's stages), and each outline's own triangulation is laid over
-// the others in a circle, which any N outlines allow (overlay_triangulation.h).  Both are decimated
-// and the mesh of fewer Steiner vertices is taken, of equals that of the wider angles.
+// the others in a circle, which any N outlines allow (overlay_triangulation.h), beginning with each
+// of them unless that takes many vertices.  All are decimated and the mesh of fewest Steiner
+// vertices is taken, of equals that of the wider angles.
 // Equal input gives equal output.
 //
 // Requires  N >= 1 simple outlines of K >= 3 rows each, positively oriented.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/pipeline.h"
 
+#include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "geometry/polygon.h"
 
@@ -28,6 +30,16 @@ class Stage {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// The outlines' indices in an order that does not depend on the caller's: by their coordinates.
+std::vector<int> OrderByContent(std::span<const Points> outlines) {
+  std::vector<int> order(outlines.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    return std::ranges::lexicographical_compare(outlines[i].reshaped(), outlines[j].reshaped());
+  });
+  return order;
+}
+
 }  // namespace
 
 Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
@@ -49,10 +61,15 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
   }();
   if (!simplified) return std::move(simplified).error();
 
+  // Triangulation lays one drawing over the others: the mesh must not depend on who came first.
+  const std::vector<int> order = OrderByContent(simplified->outlines);
+  std::vector<Points> ordered(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) ordered[k] = simplified->outlines[order[k]];
+
   auto triangulated = [&] {
     const Stage stage(report, progress, "triangulation", 0.5, 0.8);
-    return TriangulateCompatibly(simplified->outlines, simplified->landmark_rows,
-                                 options.triangulation, progress);
+    return TriangulateCompatibly(ordered, simplified->landmark_rows, options.triangulation,
+                                 progress);
   }();
   if (!triangulated) return std::move(triangulated).error();
 
@@ -61,6 +78,8 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
     return ImproveMesh(std::move(triangulated->mesh), options.improvement, progress);
   }();
   if (!improved) return std::move(improved).error();
+  for (std::size_t k = 0; k < order.size(); ++k) ordered[order[k]] = std::move(improved->poses[k]);
+  improved->poses = std::move(ordered);
 
   if (const auto defect = FindDefect(*improved)) {
     return Error{ErrorCode::kInternal,

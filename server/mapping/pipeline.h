@@ -43,6 +43,7 @@ struct Mapping {
 // N drawings -> one mesh that is valid in all of them (paper, section 3): outlines are matched,
 // simplified together, triangulated compatibly, and the mesh improved.  Reports fractions of the
 // whole to `progress`, in stages "matching", "simplification", "triangulation", "improvement".
+// The order of the drawings changes nothing but the order of the poses.
 //
 // Fails with what the stages fail with; the final mesh is verified by exact predicates, and a
 // defect is reported as kInternal rather than handed on.

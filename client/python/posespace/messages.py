@@ -341,7 +341,8 @@ def _vertices(message: pose_service_pb2.Frame) -> NDArray[np.float32]:
         return np.frombuffer(message.vertices, dtype="<f4").reshape(-1, 2)
     grid = message.quantized
     steps = np.frombuffer(grid.values, dtype="<i2").reshape(-1, 2).astype(np.float32)
-    return np.float32(grid.step) * steps + np.float32([grid.center_x, grid.center_y])
+    centre = np.array([grid.center_x, grid.center_y], dtype=np.float32)
+    return (steps * np.float32(grid.step) + centre).astype(np.float32)
 
 
 def frame(

@@ -192,9 +192,9 @@ class Player:
 
         Up to max_in_flight frames are under way while yours is being used, so `points` is read that
         far ahead; it may be endless.  Options as in Session.blend; `avatar` is by default the
-        session that play() was called on; without weights frames are smaller on the wire.  `compact`
-        ones have half the bytes: vertices travel as int16 and are off by at most 1/128,000 of the
-        longer side of the drawing's box.
+        session that play() was called on; without weights frames are smaller on the wire.
+        `compact` ones have half the bytes: vertices travel as int16 and are off by at most
+        1/128,000 of the longer side of the drawing's box.
 
         Raises the errors of Session.blend for a point that cannot be answered (the stream goes on),
         NotFound once the session was deleted, DeadlineExceeded when a frame takes longer than the
