@@ -342,13 +342,27 @@ TEST(PoseSpace, AsksNothingAboutUnlikeDrawingsThatAPersonHasMarked) {
   ASSERT_NE(unmarked, nullptr);
   EXPECT_TRUE(AsksToCheck(*unmarked, "bar")) << unmarked->report().confidence[1];
 
-  for (const int row : {0, 1, 2}) {
-    const Point on_creature = inputs.drawings[0]->outline.outer.row(20 * row).transpose();
-    inputs.landmarks.push_back({{on_creature, Point(bar.row(row).transpose())}});
+  // A mark a quarter of the way each: what lies between two fits its counterpart in length.
+  const Points& creature = inputs.drawings[0]->outline.outer;
+  const Points quarters = PointsOf("30 90, 185 90, 170 110, 15 110");
+  for (int k = 0; k < 4; ++k) {
+    const Point on_creature = creature.row(k * creature.rows() / 4).transpose();
+    inputs.landmarks.push_back({{on_creature, Point(quarters.row(k).transpose())}});
   }
   const auto marked = Built(inputs);
   ASSERT_NE(marked, nullptr);
-  EXPECT_FALSE(AsksToCheck(*marked, "bar"));
+  EXPECT_FALSE(AsksToCheck(*marked, "bar")) << testing::PrintToString(marked->warnings());
+
+  // Marks that squeeze nearly the whole creature into the end of the bar are doubted themselves.
+  inputs.landmarks.clear();
+  for (const int row : {0, 1, 2}) {
+    const Point crowded = creature.row(creature.rows() / 24 * row).transpose();
+    inputs.landmarks.push_back({{crowded, Point(bar.row(row).transpose())}});
+  }
+  const auto crowded = Built(inputs);
+  ASSERT_NE(crowded, nullptr);
+  EXPECT_TRUE(AsksToCheck(*crowded, "bar"));
+  EXPECT_THAT(crowded->warnings(), testing::Contains(testing::HasSubstr("check these marks")));
 }
 
 TEST(PoseSpace, AsksNothingAboutPosesThatMatchClearly) {
