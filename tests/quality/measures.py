@@ -10,6 +10,7 @@ import posespace
 from exact_mesh_checks import assert_valid_in_every_drawing
 from numpy.typing import NDArray
 from outlines import edge_lengths, farthest, protrusion, signed_area, turns, turns_of
+from posespace.messages import Rotation
 
 BLENDS = 10  # random in-betweens of a group
 TOLERANCE = 0.03  # the build's default, of the square root of a drawing's area
@@ -53,13 +54,15 @@ def enclosure(mesh: posespace.Mesh) -> Enclosure:
     return worst
 
 
-def matching_errors(session: posespace.Session, places: dict[str, Points]) -> Points:
+def matching_errors(
+    session: posespace.Session, places: dict[str, Points], rotation: Rotation = "upright"
+) -> Points:
     """(N, N): how far along drawing j the automatic matching puts row k of drawing i from row k of
     drawing j, in turns; the mean over the length of drawing i.
 
     places  Drawing -> ring (K, 2), its own outline; row k of every ring is the same place.
     """
-    arcs = session.suggest(samples=_ARCS).arcs
+    arcs = session.suggest(samples=_ARCS, rotation=rotation).arcs
     found = {name: turns_of(arcs[name], ring) for name, ring in places.items()}
     known = {name: turns(ring) for name, ring in places.items()}
     errors = np.zeros((len(places), len(places)))
