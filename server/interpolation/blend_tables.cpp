@@ -44,13 +44,13 @@ AlignedArray<T> Aligned(std::size_t count) {
 }  // namespace
 
 Result<void> BlendLayout::Fill(const RigidModel& model) {
-  const auto& [gradients, areas, rotations, stretches] = model.rigid;
+  const auto& [gradients, areas, masses, rotations, stretches] = model.rigid;
   const int num_poses = static_cast<int>(model.poses.size());
   const Eigen::Index num_triangles = model.triangles.rows();
   const int num_vertices = static_cast<int>(model.parts.part_of.size());
   size = std::sqrt(areas.sum());
 
-  factor = TRY(BlockFactor::Factor(NormalMatrix(model.triangles, model.parts, gradients, areas)));
+  factor = TRY(BlockFactor::Factor(NormalMatrix(model.triangles, model.parts, gradients, masses)));
   coefficients = Aligned<float>(factor.coefficients.size());
   std::copy(factor.coefficients.begin(), factor.coefficients.end(), coefficients.get());
 
@@ -89,7 +89,7 @@ Result<void> BlendLayout::Fill(const RigidModel& model) {
       for (int c = 0; c < 3; ++c) corner[c * kTriangleBlock] = corner[c * kTriangleBlock - 1];
       continue;
     }
-    const double mass = areas[t] / (size * size);
+    const double mass = masses[t] / (size * size);
     for (int i = 0; i < num_poses; ++i) {
       float* const pose = numbers + static_cast<std::size_t>(4 * i) * kTriangleBlock;
       pose[0] = static_cast<float>(rotations(t, i) - mean[i]);

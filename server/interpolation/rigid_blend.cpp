@@ -105,7 +105,7 @@ Result<RigidBlend> RigidBlend::Prepare(const CompatibleMesh& mesh, std::vector<i
   RigidModel model = TRY(MeasurePoses(mesh, std::move(turns)));
   const Eigen::VectorXd equal = Eigen::VectorXd::Ones(mesh.num_triangles());
   auto rigid_fit = TRY(
-      GradientFit::Prepare(mesh.triangles, model.parts, model.rigid.gradients, model.rigid.areas));
+      GradientFit::Prepare(mesh.triangles, model.parts, model.rigid.gradients, model.rigid.masses));
   auto paper_fit =
       TRY(GradientFit::Prepare(mesh.triangles, model.parts, model.paper.gradients, equal));
   return RigidBlend(std::make_shared<const Prepared>(

@@ -44,13 +44,14 @@ struct BlendOptions {
 //
 // Per triangle t and pose i, the map from a rest triangle to the pose is split as R(alpha) S, S
 // symmetric.  A blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights
-// (the stretch may be mixed otherwise), and solves min_V sum_t area_t |J_t V - target_t|^2, area_t
-// of the rest triangle, with one prefactored matrix; each refit replaces the rotations by those
-// nearest to J_t S_t of the last solution and solves again.
+// (the stretch may be mixed otherwise), and solves min_V sum_t mass_t |J_t V - target_t|^2, mass_t
+// the area of the rest triangle, or half their mean when it is smaller, with one prefactored
+// matrix; each refit replaces the rotations by those nearest to J_t S_t of the last solution and
+// solves again.
 //
 // Rest shape    The metric of a rest triangle is the mean of the poses' E_i'E_i (E_i its edge
 //               vectors in pose i), so no pose is privileged; it is turned so that pose 0 maps it
-//               without rotation.  kPaper: pose 0 itself, every area_t = 1.
+//               without rotation.  kPaper: pose 0 itself, every mass_t = 1.
 // Rotations     are unwrapped over the mesh, so parts that turn by more than half a turn keep
 //               turning.
 // Placement     The area centroid of the result lies at sum w_i c_i, c_i the area centroid of pose

@@ -8,6 +8,11 @@
 namespace posespace {
 namespace {
 
+// Splinters count as triangles of this share of the mean area: by their own areas it would cost
+// next to nothing to turn them over.  Of 500 blends of real drawings 7 fold without, 1 with 0.2,
+// and none with 0.5.
+constexpr double kLeastMass = 0.5;
+
 using Eigen::Matrix2d;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -144,6 +149,7 @@ TriangleMaps MeasureTriangles(const CompatibleMesh& mesh, RestShape rest_shape) 
       maps.stretches(2 * num_triangles + t, i) = stretch(1, 1);
     }
   }
+  maps.masses = maps.areas.cwiseMax(kLeastMass * maps.areas.mean());
   return maps;
 }
 

@@ -8,7 +8,7 @@
 namespace posespace {
 
 EigenBlend::EigenBlend(const RigidModel& model) : model_(model) {
-  const auto& [gradients, areas, rotations, stretches] = model.rigid;
+  const auto& [gradients, areas, masses, rotations, stretches] = model.rigid;
   const Eigen::Index num_triangles = model.triangles.rows();
   const auto num_vertices = static_cast<Eigen::Index>(model.parts.part_of.size());
   std::vector<Eigen::Triplet<double>> gradient, divergence;
@@ -17,7 +17,7 @@ EigenBlend::EigenBlend(const RigidModel& model) : model_(model) {
       for (int axis = 0; axis < 2; ++axis) {
         const double g = gradients(t, 2 * c + axis);
         gradient.emplace_back(axis * num_triangles + t, model.triangles(t, c), g);
-        divergence.emplace_back(model.triangles(t, c), axis * num_triangles + t, areas[t] * g);
+        divergence.emplace_back(model.triangles(t, c), axis * num_triangles + t, masses[t] * g);
       }
     }
   }
@@ -25,7 +25,7 @@ EigenBlend::EigenBlend(const RigidModel& model) : model_(model) {
   gradient_.setFromTriplets(gradient.begin(), gradient.end());
   divergence_.resize(num_vertices, 2 * num_triangles);
   divergence_.setFromTriplets(divergence.begin(), divergence.end());
-  factor_.compute(NormalMatrix(model.triangles, model.parts, gradients, areas));
+  factor_.compute(NormalMatrix(model.triangles, model.parts, gradients, masses));
   targets_.resize(2 * num_triangles, 2);
 }
 

@@ -89,7 +89,8 @@ def limited(weights: Array, limit: str) -> Array:
 class DenseRigidBlend:
     """poses (N, V, 2), one triangle list; `turns` as the service exports them.
 
-    base "mean": the rest triangle has the mean metric, triangles weigh as their rest areas.
+    base "mean": the rest triangle has the mean metric, triangles weigh as their rest areas,
+        or as half the mean of these if they are smaller.
     base "first": the rest triangle is that of pose 0, all weigh the same (the published form).
     """
 
@@ -108,7 +109,8 @@ class DenseRigidBlend:
             mean_stretch = np.broadcast_to(np.eye(2), e[0].shape)
         self.rest = mean_stretch @ e[0]
         areas = np.linalg.det(self.rest) / 2
-        self.masses = areas if base == "mean" else np.ones_like(areas)
+        splinters = 0.5 * areas.mean()
+        self.masses = np.maximum(areas, splinters) if base == "mean" else np.ones_like(areas)
 
         stretch_of_a = rotation(-theta) @ a
         beyond = stretch_of_a @ np.linalg.inv(mean_stretch)

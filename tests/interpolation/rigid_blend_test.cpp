@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/polygon.h"
+#include "interpolation/triangle_maps.h"
 #include "tests/interpolation/sample_meshes.h"
 #include "tests/support/points.h"
 
@@ -46,6 +47,19 @@ CompatibleMesh Limbs(unsigned seed, double most = 1.0) {
   CompatibleMesh mesh = PlusMesh(2, RandomLimbs(4, most, &random));
   for (const Points& pose : mesh.poses) EXPECT_EQ(CountFolds(mesh.triangles, pose), 0);
   return mesh;
+}
+
+TEST(MeasureTriangles, RaisesTheMassOfSplintersToHalfTheMeanArea) {
+  CompatibleMesh mesh;  // a square in two halves, with a splinter on one side
+  mesh.poses.push_back(PointsOf("0 0, 10 0, 10 10, 0 10, 10.1 5"));
+  mesh.poses.push_back(PointsOf("0 0, 20 0, 20 20, 0 20, 20.3 10"));
+  mesh.triangles.resize(3, 3);
+  mesh.triangles << 0, 1, 2, 0, 2, 3, 1, 4, 2;
+  const TriangleMaps maps = MeasureTriangles(mesh, RestShape::kMean);
+  EXPECT_EQ(maps.masses[0], maps.areas[0]);
+  EXPECT_EQ(maps.masses[1], maps.areas[1]);
+  EXPECT_LT(maps.areas[2], 0.02 * maps.areas[0]);
+  EXPECT_DOUBLE_EQ(maps.masses[2], 0.5 * maps.areas.mean());
 }
 
 TEST(RigidBlend, ReproducesEachPose) {
