@@ -12,6 +12,7 @@
 #include "drawing/feature_flow.h"
 #include "drawing/ghost_loss.h"
 #include "drawing/interior_moves.h"
+#include "drawing/paint_filling.h"
 #include "drawing/with_opencv.h"
 
 namespace posespace {

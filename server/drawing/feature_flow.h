@@ -6,10 +6,6 @@
 
 namespace posespace {
 
-// The colours of a premultiplied picture, continued smoothly to where nothing is painted, so that
-// the edge of the painting is no edge of the result.  All zero for an empty picture.
-cv::Mat3f FillBeyondPaint(const cv::Mat4f& picture);
-
 // For each pixel of `from`: how far the same feature lies away in `to`, pixels (x, y), and how much
 // that is to be trusted: the detail around it (squared gradient), as far as both pictures agree
 // about it.  Gathered over `reach` pixels (standard deviation).

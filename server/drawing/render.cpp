@@ -9,9 +9,16 @@
 #include <utility>
 
 #include "drawing/colour_space.h"
+#include "drawing/colours_beyond.h"
 #include "drawing/edge_distance.h"
 
 namespace posespace {
+
+namespace {
+
+constexpr int kFillLevel = 2;  // colours beyond the painting need no more than its quarter
+
+}  // namespace
 
 RenderTexture::RenderTexture(const Texture& texture)
     : origin_(texture.origin), edge_distance_(EdgeDistance(texture.image)) {
@@ -39,6 +46,9 @@ RenderTexture::RenderTexture(const Texture& texture)
     }
     levels_.push_back(std::move(coarse));
   }
+  fill_level_ = std::min(kFillLevel, static_cast<int>(levels_.size()) - 1);
+  const Level& rough = levels_[fill_level_];
+  fill_ = ColoursBeyond(rough.width, rough.height, rough.texels);
 }
 
 Eigen::Array4f RenderTexture::At(const Point& place, int level) const {
@@ -87,6 +97,22 @@ float RenderTexture::EdgeDistanceAt(const Point& place) const {
                       t * ((1.0f - s) * cell[below] + s * cell[below + right]);
   const float beyond = static_cast<float>((at - nearest).norm());
   return (units / kEdgeDistanceUnits - beyond) / static_cast<float>(finest.scale);
+}
+
+Eigen::Array4f RenderTexture::ColourBeyond(const Point& place) const {
+  if (fill_.empty()) return Eigen::Array4f(0.0f, 0.0f, 0.0f, 1.0f);
+  const Level& level = levels_[fill_level_];
+  const Point last(level.width - 1.0, level.height - 1.0);
+  const Point at = ((place - origin_) * level.scale - Point(0.5, 0.5)).cwiseMax(0.0).cwiseMin(last);
+  const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
+  const int right = std::min(x + 1, level.width - 1), below = std::min(y + 1, level.height - 1);
+  const auto texel = [&](int i, int j) {
+    return Eigen::Map<const Eigen::Array4f>(fill_.data() +
+                                            4 * (static_cast<std::ptrdiff_t>(j) * level.width + i));
+  };
+  const float s = static_cast<float>(at.x() - x), t = static_cast<float>(at.y() - y);
+  return (1.0f - t) * ((1.0f - s) * texel(x, y) + s * texel(right, y)) +
+         t * ((1.0f - s) * texel(x, below) + s * texel(right, below));
 }
 
 namespace {
@@ -226,19 +252,32 @@ struct Brush {
   bool crisp = false;  // two layers or more may disagree about what is painted
   float texel = 0.0f;  // mean over the layers
 
-  // Makes a pixel as opaque as the layers that are painted there, if it is to be painted.  Where
-  // the layers agree it stays as it is, and so do shades fainter than an edge.
+  // Makes a pixel as opaque as the layers that are painted there, if it is to be painted, in the
+  // mean colour of all layers: that of one which is not painted there is that beside.  Where the
+  // layers agree it stays as it is, and so do shades fainter than an edge.
   void Sharpen(std::span<const Run> runs, std::size_t index, MixedPixel* pixel) const {
     float covered = 0.0f, inside = 0.0f;  // means over the layers; inside in drawing pixels
+    Eigen::Array4f colour = Eigen::Array4f::Zero();  // opaque
     for (std::size_t k = 0; k < layers.size(); ++k) {
       const ActiveLayer& layer = layers[k];
       const Point place = runs[k].At(index);
-      const float alpha = layer.texture->At(place, layer.level)[3];
+      const Eigen::Array4f shown = layer.texture->At(place, layer.level);
+      const float alpha = std::min(shown[3], 1.0f);
+      colour += layer.weight * (shown + (1.0f - alpha) * layer.texture->ColourBeyond(place));
       const float texels = TexelsInside(alpha, layer.texture->EdgeDistanceAt(place) / layer.texel);
       covered += layer.weight * Coverage(texels);
       inside += layer.weight * layer.texel * texels;
     }
-    if (covered > 0.0f) pixel->colour *= Coverage(inside / texel) / covered;
+    if (!(covered > 0.0f)) return;
+    // As opaque as the mix is where it covers; and opaque where a layer is, whatever the estimate
+    // of what edges leave of it.
+    constexpr float kNearlyOpaque = 0.9f;
+    const float share = Coverage(inside / texel), opacity = pixel->colour[3] / covered;
+    const float opaque =
+        std::clamp((pixel->most_alpha - kNearlyOpaque) / (1.0f - kNearlyOpaque), 0.0f, 1.0f);
+    const float dispute = std::min(2.0f * (pixel->most_alpha - pixel->least_alpha), 1.0f);
+    pixel->colour = (1.0f - dispute) * (share / covered) * pixel->colour +
+                    dispute * share * std::lerp(std::min(opacity, 1.0f), 1.0f, opaque) * colour;
   }
 };
 

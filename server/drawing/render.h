@@ -12,8 +12,9 @@
 namespace posespace {
 
 // A texture made ready for mixing: premultiplied alpha, linear light, float, with its reductions
-// to a half, a quarter, ... so that small pictures of it do not shimmer; and how far each texel
-// lies from the edge of the painting.  Immutable; share freely.  24 bytes a texel.
+// to a half, a quarter, ... so that small pictures of it do not shimmer; how far each texel lies
+// from the edge of the painting; and roughly, which colours are nearest beyond it.  Immutable;
+// share freely.  25 bytes a texel.
 class RenderTexture {
  public:
   explicit RenderTexture(const Texture& texture);
@@ -32,6 +33,9 @@ class RenderTexture {
   // outside.
   float EdgeDistanceAt(const Point& place) const;
 
+  // The colour of the painting at a place beyond it, continued smoothly: opaque, linear RGBA.
+  Eigen::Array4f ColourBeyond(const Point& place) const;
+
  private:
   struct Level {
     int width;
@@ -43,6 +47,8 @@ class RenderTexture {
   Point origin_;
   std::vector<Level> levels_;
   std::vector<std::int16_t> edge_distance_;  // of the texels of level 0
+  int fill_level_ = 0;                       // whose texels the next ones lie at
+  std::vector<float> fill_;                  // RGBA
 };
 
 // One pose's part in a picture.

@@ -498,7 +498,7 @@ std::int64_t PoseSpace::MemoryBytes() const {
   // float for one.
   constexpr std::int64_t kPerTriangleAndPose = 2 * 4 * (2 * sizeof(double) + sizeof(float));
   constexpr std::int64_t kPerVertex = 2 * (2 * 40 * sizeof(double) + 160 * sizeof(float));
-  constexpr std::int64_t kPerTexel = 24;
+  constexpr std::int64_t kPerTexel = 25;
   std::int64_t bytes =
       std::int64_t{mesh().num_triangles()} * mesh().num_poses() * kPerTriangleAndPose +
       mesh().num_vertices() * kPerVertex + state_->weights.MemoryBytes();

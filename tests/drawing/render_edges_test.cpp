@@ -74,11 +74,13 @@ TEST(CrispEdges, AreSoftOnRequest) {
   EXPECT_GE(Faint(row), 18);
 }
 
-TEST(CrispEdges, PaintWithTheColourOfThoseThatArePainted) {
+TEST(CrispEdges, PaintInTheMeanColourAlsoWhereOneDrawingIsNotPainted) {
   const Image mixed = Mix(Stroke(4, kRed), Stroke(24, kBlue), 0.5, PaintEdges::kCrisp);
   const std::uint8_t* beside = mixed.at(kSide / 2 + 5, kSide / 2);
-  EXPECT_EQ(beside[0], 0);
-  EXPECT_EQ(beside[2], 255);
+  const std::uint8_t* within = mixed.at(kSide / 2, kSide / 2);
+  EXPECT_NEAR(within[0], 188, 1);  // half the light
+  EXPECT_NEAR(beside[0], within[0], 3);
+  EXPECT_NEAR(beside[2], within[2], 3);
   EXPECT_EQ(beside[3], 255);
 }
 
@@ -92,6 +94,33 @@ TEST(CrispEdges, ChangeNothingWhereDrawingsAgree) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       EXPECT_NEAR(crisp.at(x, y)[3], soft.at(x, y)[3], 1) << x << ", " << y;
+    }
+  }
+}
+
+// A disc in the middle, antialiased.
+Image SmoothDisc(double radius) {
+  Image image = PictureOf(kSide, kSide);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const double inside = radius - std::hypot(x + 0.5 - kSide / 2, y + 0.5 - kSide / 2);
+      image.at(x, y)[3] = static_cast<std::uint8_t>(255 * std::clamp(inside + 0.5, 0.0, 1.0));
+    }
+  }
+  return image;
+}
+
+TEST(CrispEdges, LeaveNoFaintLineWhereTheEdgeOfOneDrawingRunsInsideTheOther) {
+  for (const double magnification : {0.7, 1.0, 1.6}) {
+    const Image mixed =
+        Mix(SmoothDisc(6.3), SmoothDisc(24.6), 0.5, PaintEdges::kCrisp, magnification);
+    for (int y = 0; y < mixed.height; ++y) {
+      for (int x = 0; x < mixed.width; ++x) {
+        const double centre = 0.5 * mixed.width;
+        const double radius = std::hypot(x + 0.5 - centre, y + 0.5 - centre) / magnification;
+        if (radius < 13.5) EXPECT_GE(mixed.at(x, y)[3], 250) << x << ", " << y;
+        if (radius > 17.5) EXPECT_EQ(mixed.at(x, y)[3], 0) << x << ", " << y;
+      }
     }
   }
 }

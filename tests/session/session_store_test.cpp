@@ -280,7 +280,7 @@ TEST_F(SessionStore, CountsThePixelsThatAPictureNeeds) {
   EXPECT_GT(built, unbuilt + 500'000) << "the weight field alone";
   const auto space = *session_->Built();
   (void)space->Render(*space->Blend({Point(0, 0), {}, 0.0}), space->DefaultView(16, 16));
-  EXPECT_EQ(session_->MemoryBytes(), built + 2 * 128 * 128 * 24);
+  EXPECT_EQ(session_->MemoryBytes(), built + 2 * 128 * 128 * 25);
 }
 
 }  // namespace
