@@ -14,9 +14,12 @@
 #include "mapping/landmark_marks.h"
 #include "mapping/matching_confidence.h"
 #include "mapping/matching_tree.h"
+#include "mapping/mirror_symmetry.h"
 #include "mapping/outline_curve.h"
 #include "mapping/outline_map.h"
+#include "mapping/outline_mismatch.h"
 #include "mapping/pair_matching.h"
+#include "mapping/symmetric_matching.h"
 
 namespace posespace {
 namespace {
@@ -26,10 +29,6 @@ constexpr double kUpright = std::numbers::pi / 4.0;  // marks that turn farther 
 // A match without position this many times cheaper than the upright one shows a turned copy: such
 // pairs have up to 0.07, all others of fifty real groups 0.3 or more.
 constexpr double kTurnedCopy = 0.15;
-constexpr double kMismatchSlope = 4.5;
-constexpr double kLeastMismatch = 0.12;  // drawings of unlike but well matched things reach 0.10
-constexpr double kLeastMarkedMismatch = 0.1;
-constexpr int kMismatchSteps = 256;
 constexpr int kMaxCorners =
     100'000;                       // of all outlines together; each becomes a row of every outline
 constexpr int kCycleSamples = 64;  // at which direct and composed maps are compared
@@ -38,6 +37,12 @@ std::vector<OutlineCurve> CurvesOf(std::span<const MatchingShape> shapes) {
   std::vector<OutlineCurve> curves;
   for (const MatchingShape& shape : shapes) curves.emplace_back(shape.outline, shape.colours);
   return curves;
+}
+
+std::vector<std::vector<double>> MirrorSumsOf(const std::vector<OutlineCurve>& curves) {
+  std::vector<std::vector<double>> sums;
+  for (const OutlineCurve& curve : curves) sums.push_back(FindMirrorSums(curve));
+  return sums;
 }
 
 // Matches N drawings given in an order that does not depend on the caller's.
@@ -50,7 +55,8 @@ class GroupMatching {
         options_(options),
         progress_(progress),
         n_(static_cast<int>(curves_.size())),
-        sides_(curves_.begin(), curves_.end()) {}
+        sides_(curves_.begin(), curves_.end()),
+        mirror_sums_(MirrorSumsOf(curves_)) {}
 
   // False when cancelled.
   bool Run() { return ComparePairs() && FillLandmarks() && MatchAlongTree(); }
@@ -81,55 +87,14 @@ class GroupMatching {
     return evidence;
   }
 
-  // As in MatchedOutlines, by the numbers of this order.
-  std::optional<Mismatch> FindMismatch() const {
-    const double least = marks_.on.empty() ? kLeastMismatch : kLeastMarkedMismatch;
-    std::optional<Mismatch> worst;
-    for (int i = 0; i < n_; ++i) {
-      for (int j = i + 1; j < n_; ++j) {
-        const double share = MismatchShare(maps_[i], maps_[j], 0.0, 1.0);
-        if (share > (worst ? worst->share : least)) worst = Mismatch{i, j, share, {}};
-      }
-    }
-    if (worst) worst->landmarks = LandmarksAround(*worst);
-    return worst;
+  // By the numbers of this order.
+  std::optional<Mismatch> WorstMismatch() const {
+    std::vector<double> landmarks;
+    for (const auto& positions : positions_) landmarks.push_back(positions[tree_.root]);
+    return FindMismatch(maps_, landmarks, order_);
   }
 
  private:
-  // The share of two outlines, with maps from a common parameter and from `from` for `length` turns
-  // of it, that is longer in one than in the other by more than kMismatchSlope.
-  static double MismatchShare(const OutlineMap& a, const OutlineMap& b, double from,
-                              double length) {
-    double share = 0.0;
-    for (int k = 0; k < kMismatchSteps; ++k) {
-      const double begin = from + length * k / kMismatchSteps;
-      const double end = from + length * (k + 1) / kMismatchSteps;
-      const double on_a = a.At(end) - a.At(begin), on_b = b.At(end) - b.At(begin);
-      if (std::max(on_a, on_b) > kMismatchSlope * std::min(on_a, on_b))
-        share += 0.5 * (on_a + on_b);
-    }
-    return share;
-  }
-
-  // The marks' landmarks at the ends of the arc where most of the mismatch lies.
-  std::vector<int> LandmarksAround(const Mismatch& mismatch) const {
-    std::vector<int> around;
-    double most = 0.0;
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      const int begin = order_[k], end = order_[(k + 1) % order_.size()];
-      const double from = positions_[begin][tree_.root];
-      double length = positions_[end][tree_.root] - from;
-      length -= std::floor(length);
-      if (begin == end) length = 1.0;
-      const double share =
-          MismatchShare(maps_[mismatch.first], maps_[mismatch.second], from, length);
-      if (share <= most) continue;
-      most = share;
-      around = begin == end ? std::vector<int>{begin} : std::vector<int>{begin, end};
-    }
-    return around;
-  }
-
   struct ComparedPair {
     PairWeights weights;
     OutlineMap map;
@@ -235,7 +200,9 @@ class GroupMatching {
 
   OutlineMap Match(int a, int b, const std::vector<Anchor>& anchors) const {
     const ComparedPair& pair = Pair(a, b);
-    OutlineMap map = MatchFinely(curves_[a], curves_[b], anchors, pair.starts, pair.weights).map;
+    OutlineMap map = MatchSymmetrically(curves_[a], mirror_sums_[a], curves_[b], mirror_sums_[b],
+                                        anchors, pair.starts, pair.weights)
+                         .map;
     return KeepStrokesTogether(curves_[a], sides_[a], curves_[b], sides_[b], anchors,
                                std::move(map), pair.weights);
   }
@@ -284,6 +251,7 @@ class GroupMatching {
   Progress* const progress_;
   const int n_;
   const std::vector<StrokeSides> sides_;
+  const std::vector<std::vector<double>> mirror_sums_;
 
   std::vector<ComparedPair> pairs_;  // n x n, row i to column j
   Eigen::MatrixXd costs_;
@@ -380,7 +348,7 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
     result.confidence[order[k]] = confidence[k];
     result.proposal.flips[order[k]] = proposal.flips[k];
   }
-  if (const auto mismatch = matching.FindMismatch()) {
+  if (const auto mismatch = matching.WorstMismatch()) {
     const auto [first, second] = std::minmax(order[mismatch->first], order[mismatch->second]);
     result.mismatch = Mismatch{first, second, mismatch->share, {}};
     for (const int landmark : mismatch->landmarks) {

@@ -96,8 +96,10 @@ Result<void> CheckLandmarks(std::span<const MatchingShape> shapes,
 // Every corner of every outline becomes a row, so each output ring follows its outline exactly;
 // corners of different outlines share a row when they are closer than 0.25 % of the perimeter on
 // all of them.  Each ring is simple and positively oriented.  Every landmark is a row: in the
-// drawings that it marks, that row is the outline point nearest to the mark.  The result depends on
-// the order of the drawings only in the order of its rings.
+// drawings that it marks, that row is the outline point nearest to the mark.  Mirror-symmetric
+// drawings match symmetrically where that costs little and the landmarks allow it (see
+// symmetric_matching.h).  The result depends on the order of the drawings only in the order of its
+// rings.
 //
 // Requires  N >= 1 shapes; each landmark has N entries, at least one of them set.
 // Fails     kLandmarkNotFinite, kLandmarkOffOutline (names landmark, drawing, distance and limit),
