@@ -22,9 +22,9 @@ PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTrans
 
 void PlayStream::Start() {
   std::unique_lock lock(mutex_);
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::OnRead(bool ok) {
@@ -36,9 +36,9 @@ void PlayStream::OnRead(bool ok) {
     waiting_.push_back(std::move(incoming_));
     ++in_flight_;
   }
-  const Next next = Advance(/*may_work_here=*/true);
+  Next next = Advance(/*may_work_here=*/true);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::OnWritten(bool ok) {
@@ -51,18 +51,18 @@ void PlayStream::OnWritten(bool ok) {
     gone_ = true;
     End(Error{ErrorCode::kCancelled, "the client went away", {}});
   }
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::OnCancelled() {
   std::unique_lock lock(mutex_);
   gone_ = true;
   End(Error{ErrorCode::kCancelled, "the client went away", {}});
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::Work() {
@@ -88,9 +88,9 @@ void PlayStream::Work() {
     outgoing_.back().completes = true;
   }
   if (!answered) End(std::move(answered));
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::Beat(Clock::time_point now) {
@@ -105,17 +105,17 @@ void PlayStream::Beat(Clock::time_point now) {
     heartbeat.mutable_heartbeat();
     Queue(MessageBytes(heartbeat));
   }
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 void PlayStream::Drain(std::chrono::milliseconds stop_sending_in, Clock::time_point now) {
   std::unique_lock lock(mutex_);
   StartDraining(stop_sending_in, now);
-  const Next next = Advance(/*may_work_here=*/false);
+  Next next = Advance(/*may_work_here=*/false);
   lock.unlock();
-  Do(next);
+  Do(std::move(next));
 }
 
 // The first draining is said; a later one can only shorten it.
@@ -160,41 +160,45 @@ void PlayStream::End(Result<void> outcome) {
   if (gone_) outgoing_.shorten(writing_ ? 1 : 0);
 }
 
-// Starts what can be started and says what the caller must do after unlocking.  Reads and writes
-// start under the lock, so that none follows a Finish.
+// Decides what happens next; the caller does it after unlocking.  Starting a write may send its
+// bytes there and then, and the thread that hears of it would only wait for the lock.
 PlayStream::Next PlayStream::Advance(bool may_work_here) {
-  if (finished_) return Next::kWait;
+  Next next;
+  if (finished_) return next;
   if (!writing_ && !outgoing_.empty()) {
     writing_ = true;
     last_said_ = Clock::now();
-    transport_.StartWrite(std::move(outgoing_.front().message));
+    next.write = std::move(outgoing_.front().message);
   }
-  Next work = Next::kWait;
   if (!working_ && !waiting_.empty() && queued_bytes_ <= kQueuedBytes) {
     working_ = true;
     const v1::PlayRequest& request = waiting_.front()->message();
     const bool brief = slots_.EstimateMicroseconds(request) <= kShortWork;
-    work = slots_.MustLoad(request) ? Next::kScheduleLoad
-           : may_work_here && brief ? Next::kWorkHere
-                                    : Next::kScheduleWork;
+    next.then = slots_.MustLoad(request) ? Then::kScheduleLoad
+                : may_work_here && brief ? Then::kWorkHere
+                                         : Then::kScheduleWork;
     // The answer is a moment away, and is written before the next message is read: reading first
     // would send the client its credit in a packet of its own.
-    if (work == Next::kWorkHere) return work;
+    if (next.then == Then::kWorkHere) return next;
   }
   if (!reading_ && !all_said_ && !outcome_ && in_flight_ < max_in_flight_) {
     reading_ = true;
     if (!incoming_) TakeSpare();
     incoming_->Clear();
-    transport_.StartRead(&incoming_->message());
+    next.read = &incoming_->message();
+    starting_ += kStarting;
   }
-  if (work != Next::kWait) return work;
   const bool over = outcome_ || (all_said_ && waiting_.empty());
-  if (over && !working_ && !writing_ && outgoing_.empty()) {
+  if (over && !working_ && !writing_ && outgoing_.empty() && MayFinish()) {
     finished_ = true;
-    return Next::kFinish;
+    next.then = Then::kFinish;
   }
-  return Next::kWait;
+  return next;
 }
+
+// No read may follow a Finish: false when one is about to be started, whose starter then comes back
+// for the Finish.
+bool PlayStream::MayFinish() { return starting_.fetch_or(kFinishWaits) == 0; }
 
 void PlayStream::TakeSpare() {
   if (spare_.empty()) spare_.push_back(std::make_unique<ReusedRequest>());
@@ -202,17 +206,30 @@ void PlayStream::TakeSpare() {
   spare_.pop_back();
 }
 
+// The stream may be gone after a call unless more is to be done here: what is yet to be started,
+// worked on or finished keeps others from finishing.
 void PlayStream::Do(Next next) {
-  switch (next) {
-    case Next::kWait:
+  if (next.write) transport_.StartWrite(std::move(*next.write));
+  if (next.read != nullptr) {
+    transport_.StartRead(next.read);
+    if (starting_.fetch_sub(kStarting) == (kStarting | kFinishWaits)) {
+      std::unique_lock lock(mutex_);
+      starting_ = 0;
+      next = Advance(/*may_work_here=*/false);
+      lock.unlock();
+      return Do(std::move(next));
+    }
+  }
+  switch (next.then) {
+    case Then::kWait:
       return;
-    case Next::kWorkHere:
+    case Then::kWorkHere:
       return Work();
-    case Next::kScheduleWork:
+    case Then::kScheduleWork:
       return transport_.ScheduleWork();
-    case Next::kScheduleLoad:
+    case Then::kScheduleLoad:
       return transport_.ScheduleLoad();
-    case Next::kFinish:
+    case Then::kFinish:
       return transport_.Finish(outcome_.value_or(Result<void>()));
   }
 }

@@ -2,6 +2,7 @@
 #ifndef POSESPACE_RPC_PLAY_STREAM_H_
 #define POSESPACE_RPC_PLAY_STREAM_H_
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -20,7 +21,7 @@
 namespace posespace {
 
 // What a Play stream asks of whatever carries it.  No call may come back into the stream before it
-// returns.
+// returns, except from another thread.
 class PlayTransport {
  public:
   // Reads the next message; then OnRead.
@@ -85,7 +86,12 @@ class PlayStream {
     std::size_t bytes;
     bool completes = false;  // the last answer to a message that was read
   };
-  enum class Next { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
+  enum class Then { kWait, kWorkHere, kScheduleWork, kScheduleLoad, kFinish };
+  struct Next {
+    std::optional<MessageBytes> write;
+    v1::PlayRequest* read = nullptr;
+    Then then = Then::kWait;
+  };
 
   void FindSuperseded(PlaySlots::Tags* tags) const;
   void StartDraining(std::chrono::milliseconds stop_sending_in, Clock::time_point now);
@@ -94,6 +100,7 @@ class PlayStream {
   void TakeSpare();
   Next Advance(bool may_work_here);
   void Do(Next next);
+  bool MayFinish();
 
   PlayTransport& transport_;
   const std::size_t max_in_flight_;
@@ -119,6 +126,11 @@ class PlayStream {
   std::optional<Result<void>> outcome_;  // set: no further message is answered
   Clock::time_point last_said_ = Clock::now();
   std::optional<Clock::time_point> cut_off_;
+
+  // Reads that are decided on and not yet started, each kStarting, and kFinishWaits when whoever
+  // starts the last of them must finish.
+  static constexpr unsigned kFinishWaits = 1, kStarting = 2;
+  std::atomic<unsigned> starting_{0};
 };
 
 }  // namespace posespace

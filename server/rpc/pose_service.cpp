@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/pose_service.h"
 
+#include <google/protobuf/descriptor.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -15,6 +17,13 @@
 #include "rpc/render_stream.h"
 
 namespace posespace {
+
+// gRPC knows methods by their place in the proto file.
+int PoseService::PlayIndex() {
+  const auto* const service =
+      v1::PlayRequest::descriptor()->file()->FindServiceByName("PoseService");
+  return service->FindMethodByName("Play")->index();
+}
 
 Result<std::shared_ptr<const PoseSpace>> PoseService::Built(const std::string& session_id) const {
   const auto session = TRY(registry_.Find(session_id));

@@ -28,8 +28,7 @@ class PoseService final : public PoseCallbackService {
         blend_pool_(blend_pool),
         bulk_pool_(bulk_pool),
         pictures_(registry.limits().max_picture_bytes) {
-    constexpr int kPlay = 3;  // in the order of the proto file
-    MarkMethodCallback(kPlay,
+    MarkMethodCallback(PlayIndex(),
                        new grpc::internal::CallbackBidiHandler<v1::PlayRequest, MessageBytes>(
                            [this](grpc::CallbackServerContext*) { return Play(); }));
   }
@@ -49,6 +48,7 @@ class PoseService final : public PoseCallbackService {
                                                        const v1::RenderRequest* request) override;
 
  private:
+  static int PlayIndex();
   grpc::ServerBidiReactor<v1::PlayRequest, MessageBytes>* Play();
   Result<std::shared_ptr<const PoseSpace>> Built(const std::string& session_id) const;
   bool IsShort(const Session& session, const v1::BlendRequest& request) const;

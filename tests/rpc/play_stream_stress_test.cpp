@@ -74,6 +74,7 @@ class Connection final : public PlayTransport {
   PlayStream& stream() { return stream_; }
 
   void StartRead(v1::PlayRequest* message) override {
+    EXPECT_FALSE(finished_);
     const int turn = reads_++;
     Begin([=, this] {
       if (turn == 0) {
@@ -89,6 +90,7 @@ class Connection final : public PlayTransport {
     });
   }
   void StartWrite(MessageBytes bytes) override {
+    EXPECT_FALSE(finished_);
     v1::PlayResponse message;
     EXPECT_TRUE(message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
     Begin([message, this] {

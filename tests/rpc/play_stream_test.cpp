@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -29,8 +30,9 @@ class Wire final : public PlayTransport {
  public:
   void StartRead(v1::PlayRequest* message) override {
     EXPECT_EQ(reading, nullptr) << "two reads at once";
-    EXPECT_FALSE(finished);
     reading = message;
+    if (during_read) std::thread(std::ref(during_read)).join();
+    EXPECT_FALSE(finished);
   }
   void StartWrite(MessageBytes message) override {
     EXPECT_EQ(writing, nullptr) << "two writes at once";
@@ -40,6 +42,7 @@ class Wire final : public PlayTransport {
     }
     bytes = std::move(message);
     writing = &written;
+    if (during_write) std::thread(std::ref(during_write)).join();
   }
   void ScheduleWork() override {
     EXPECT_FALSE(work) << "two threads at once";
@@ -54,6 +57,9 @@ class Wire final : public PlayTransport {
     finished = true;
     error = outcome ? std::nullopt : std::optional(outcome.error().code);
   }
+
+  // What another thread does while a read or a write is being started.
+  std::function<void()> during_read, during_write;
 
   v1::PlayRequest* reading = nullptr;
   MessageBytes bytes;
@@ -524,6 +530,39 @@ TEST_F(Play, EndsOnceWhenCancelledWhileItWorksWritesAndReads) {
   stream_.OnRead(false);
   stream_.OnCancelled();
   stream_.Beat(Clock::now() + 1h);
+}
+
+TEST_F(Play, HearsThatAWriteIsDoneWhileItIsStillBeingStarted) {
+  BindSlot0();
+  wire_.during_write = [&] { Take(); };
+  Say(Tick(7, {0}));
+  EXPECT_EQ(wire_.written.frame_result().frame_id(), 7u);
+  EXPECT_EQ(wire_.writing, nullptr);
+  EXPECT_NE(wire_.reading, nullptr) << "it listens on";
+}
+
+TEST_F(Play, FinishesAfterTheStartOfAReadThatACancellationOvertakes) {
+  BindSlot0();
+  wire_.during_read = [&] {
+    stream_.OnCancelled();
+    EXPECT_FALSE(wire_.finished) << "the read is still being started";
+  };
+  Say(Tick(7, {0}));
+  EXPECT_FALSE(wire_.finished) << "the answer is being written";
+  stream_.OnWritten(false);
+  EXPECT_TRUE(wire_.finished);
+}
+
+TEST_F(Play, TheStarterOfAReadFinishesWhenAllElseHasEnded) {
+  BindSlot0();
+  wire_.during_write = [&] { Take(); };
+  wire_.during_read = [&] {
+    stream_.OnCancelled();
+    EXPECT_FALSE(wire_.finished) << "the read is still being started";
+  };
+  Say(Tick(7, {0}));
+  EXPECT_TRUE(wire_.finished);
+  EXPECT_EQ(wire_.error, ErrorCode::kCancelled);
 }
 
 TEST_F(Play, EndsWhenTheClientVanishesDuringAWrite) {
