@@ -70,6 +70,7 @@ class Writer {
         static_cast<std::uint32_t>(count), at_);
   }
   void Raw(const void* bytes, std::size_t count) {
+    if (count == 0) return;  // the pointer may be null then
     std::memcpy(at_, bytes, count);
     at_ += count;
   }
