@@ -90,7 +90,7 @@ class DenseRigidBlend:
     """poses (N, V, 2), one triangle list; `turns` as the service exports them.
 
     base "mean": the rest triangle has the mean metric, triangles weigh as their rest areas,
-        or as half the mean of these if they are smaller.
+        or as 0.4 of the mean of these if they are smaller.
     base "first": the rest triangle is that of pose 0, all weigh the same (the published form).
     """
 
@@ -109,7 +109,7 @@ class DenseRigidBlend:
             mean_stretch = np.broadcast_to(np.eye(2), e[0].shape)
         self.rest = mean_stretch @ e[0]
         areas = np.linalg.det(self.rest) / 2
-        splinters = 0.5 * areas.mean()
+        splinters = 0.4 * areas.mean()
         self.masses = np.maximum(areas, splinters) if base == "mean" else np.ones_like(areas)
 
         stretch_of_a = rotation(-theta) @ a

@@ -132,7 +132,7 @@ Points DenseBlend(const CompatibleMesh& mesh, const Eigen::VectorXd& weights,
   // sqrt(mass) J_t V = sqrt(mass) target, and vertex 0 at 0.
   Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(2 * num_triangles + 1, num_vertices);
   for (int t = 0; t < num_triangles; ++t) {
-    const double root = std::sqrt(variant.mean_rest ? std::max(area[t], 0.5 * areas.mean()) : 1.0);
+    const double root = std::sqrt(variant.mean_rest ? std::max(area[t], 0.4 * areas.mean()) : 1.0);
     for (int k = 0; k < 2; ++k) {
       for (int e = 0; e < 2; ++e) {
         equations(2 * t + k, mesh.triangles(t, e)) += root * inverse_rest[t](e, k);
@@ -152,7 +152,7 @@ Points DenseBlend(const CompatibleMesh& mesh, const Eigen::VectorXd& weights,
                                       stretch[t]);
       }
       const double root =
-          std::sqrt(variant.mean_rest ? std::max(area[t], 0.5 * areas.mean()) : 1.0);
+          std::sqrt(variant.mean_rest ? std::max(area[t], 0.4 * areas.mean()) : 1.0);
       targets.middleRows(2 * t, 2) = root * (rotation[t] * stretch[t]).transpose();
     }
     vertices = qr.solve(targets);

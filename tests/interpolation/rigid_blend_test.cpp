@@ -49,7 +49,7 @@ CompatibleMesh Limbs(unsigned seed, double most = 1.0) {
   return mesh;
 }
 
-TEST(MeasureTriangles, RaisesTheMassOfSplintersToHalfTheMeanArea) {
+TEST(MeasureTriangles, RaisesTheMassOfSplintersToFourTenthsOfTheMeanArea) {
   CompatibleMesh mesh;  // a square in two halves, with a splinter on one side
   mesh.poses.push_back(PointsOf("0 0, 10 0, 10 10, 0 10, 10.1 5"));
   mesh.poses.push_back(PointsOf("0 0, 20 0, 20 20, 0 20, 20.3 10"));
@@ -59,7 +59,7 @@ TEST(MeasureTriangles, RaisesTheMassOfSplintersToHalfTheMeanArea) {
   EXPECT_EQ(maps.masses[0], maps.areas[0]);
   EXPECT_EQ(maps.masses[1], maps.areas[1]);
   EXPECT_LT(maps.areas[2], 0.02 * maps.areas[0]);
-  EXPECT_DOUBLE_EQ(maps.masses[2], 0.5 * maps.areas.mean());
+  EXPECT_DOUBLE_EQ(maps.masses[2], 0.4 * maps.areas.mean());
 }
 
 TEST(RigidBlend, ReproducesEachPose) {

@@ -50,7 +50,7 @@ class Matched:
     def __init__(self, arcs: dict[str, np.ndarray]) -> None:
         self.arcs = arcs
 
-    def suggest(self, samples: int) -> Matched:
+    def suggest(self, samples: int, rotation: str) -> Matched:
         return self
 
 
