@@ -10,6 +10,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import posespace
@@ -32,6 +33,18 @@ def own_server() -> Iterator[posespace.LocalServer]:
 def own_client(own_server) -> Iterator[posespace.Client]:
     with posespace.connect(own_server.address, timeout=TIMEOUT) as client:
         yield client
+
+
+def freeze(pid: int) -> None:
+    """Stops every thread of a process; the signal alone is only on its way."""
+    os.kill(pid, signal.SIGSTOP)
+    threads = Path(f"/proc/{pid}/task")
+    give_up = time.monotonic() + 30
+    while any(
+        (thread / "stat").read_text().rpartition(")")[2].split()[0] != "T"
+        for thread in threads.iterdir()
+    ):
+        assert time.monotonic() < give_up, "it does not stop"
 
 
 @contextlib.contextmanager
@@ -120,7 +133,7 @@ def test_a_service_killed_between_frames_is_said(own_server, own_client):
 def test_a_service_killed_while_a_frame_is_awaited_is_said(own_server, own_client):
     session = make_walk(own_client)
     with session.play() as player, within(TIMEOUT + SLACK):
-        os.kill(own_server.pid, signal.SIGSTOP)
+        freeze(own_server.pid)
         threading.Timer(0.5, os.kill, (own_server.pid, signal.SIGKILL)).start()
         with pytest.raises(posespace.Unavailable, match=own_server.address):
             list(player.frames([(0, 0)]))
@@ -148,7 +161,7 @@ def test_a_service_killed_during_a_build_is_said(own_server, own_client):
 def test_a_hanging_service_is_given_up_after_the_timeout(own_server, own_client):
     session = make_walk(own_client)
     with session.play() as player:
-        os.kill(own_server.pid, signal.SIGSTOP)
+        freeze(own_server.pid)
         calls = [
             lambda: session.blend(at=(0, 0)),
             lambda: list(player.frames([(0, 0)])),
