@@ -164,7 +164,7 @@ Result<BlockFactor> BlockFactor::Factor(const Matrix& matrix) {
                    [&](int place) { return moved[place]; });
     std::sort(rows, rows + block.below);
     if (block.below == 0) {
-      factor.components.push_back(block.first + block.columns);  // its end, for now
+      factor.components.push_back(block.first + block.columns);  // where it ends, the next begins
     }
   }
   factor.components.insert(factor.components.begin(), 0);

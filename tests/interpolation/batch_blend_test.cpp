@@ -239,17 +239,7 @@ TEST(BatchBlend, MendsWhatFoldsWhenAskedAndNothingElse) {
 }
 
 TEST(BatchBlend, RollsAStripThroughTwoAndAHalfTurnsWithoutAFold) {
-  const auto heading = [](double s) { return 5.0 * kPi * std::pow(s / 40.0, 1.5); };
-  const Deformation spiral = [&](const Point& p) -> Point {
-    Point at = Point::Zero();
-    constexpr int kSteps = 2000;
-    for (int k = 0; k < kSteps; ++k) {
-      const double s = p.x() * (k + 0.5) / kSteps;
-      at += Point(std::cos(heading(s)), std::sin(heading(s))) * p.x() / kSteps;
-    }
-    return at + p.y() * Point(-std::sin(heading(p.x())), std::cos(heading(p.x())));
-  };
-  const CompatibleMesh mesh = StripMesh(80, 2, 0.5, {Moved(0.0, {0, 0}), spiral});
+  const CompatibleMesh mesh = StripMesh(80, 2, 0.5, {Moved(0.0, {0, 0}), RolledUp});
   EXPECT_LT(WorstError(mesh, {0, 3}), 5e-6 * SizeOf(mesh));
   Weights weights;
   for (int k = 0; k <= 20; ++k) weights.push_back(Eigen::Vector2d(1.0 - 0.05 * k, 0.05 * k));

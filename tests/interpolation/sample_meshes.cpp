@@ -107,6 +107,17 @@ Deformation Moved(double angle, const Point& shift) {
   return [=](const Point& p) -> Point { return Turned(angle, p) + shift; };
 }
 
+Point RolledUp(const Point& p) {
+  const auto heading = [](double s) { return 5.0 * std::numbers::pi * std::pow(s / 40.0, 1.5); };
+  Point at = Point::Zero();
+  constexpr int kSteps = 2000;
+  for (int k = 0; k < kSteps; ++k) {
+    const double s = p.x() * (k + 0.5) / kSteps;
+    at += Point(std::cos(heading(s)), std::sin(heading(s))) * p.x() / kSteps;
+  }
+  return at + p.y() * Point(-std::sin(heading(p.x())), std::cos(heading(p.x())));
+}
+
 Deformation WithLimbs(const std::array<double, 4>& angles, const std::array<double, 4>& lengths) {
   return [=](const Point& p) -> Point {
     for (int limb = 0; limb < 4; ++limb) {

@@ -30,6 +30,10 @@ Deformation Bent(double length, double angle);
 // Turns around (0, 0) by `angle`, then moves.
 Deformation Moved(double angle, const Point& shift);
 
+// Rolls a strip of length 40 up: its heading turns by 5 pi, tighter towards the inner end, so that
+// the spiral does not touch itself.
+Point RolledUp(const Point& p);
+
 // Bends the limbs of a PlusMesh by four angles each of which spreads evenly over the limb, and
 // makes each longer by a factor.
 Deformation WithLimbs(const std::array<double, 4>& angles, const std::array<double, 4>& lengths);
