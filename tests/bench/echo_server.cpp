@@ -6,15 +6,32 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/slice.h>
 
+#include <charconv>
+#include <chrono>
+
 #include "rpc/transport_options.h"
 
 namespace posespace {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+// The number at the end of a method's name.
+std::chrono::nanoseconds BusyTimeOf(const std::string& method) {
+  long count = 0;
+  std::from_chars(method.data() + method.rfind('/') + 1, method.data() + method.size(), count);
+  return std::chrono::nanoseconds(count);
+}
+
+void KeepBusyUntil(Clock::time_point instant) {
+  while (Clock::now() < instant) {
+  }
+}
+
 // Deletes itself when the call is done.
 class EchoReactor final : public grpc::ServerGenericBidiReactor {
  public:
-  EchoReactor() { StartRead(&incoming_); }
+  explicit EchoReactor(std::chrono::nanoseconds busy) : busy_(busy) { StartRead(&incoming_); }
 
  private:
   void OnReadDone(bool ok) override {
@@ -23,6 +40,7 @@ class EchoReactor final : public grpc::ServerGenericBidiReactor {
       incoming_.DumpToSingleSlice(&answer_);
       return StartRead(&incoming_);
     }
+    if (busy_.count() > 0) KeepBusyUntil(Clock::now() + busy_);
     const grpc::Slice copy(answer_.begin(), answer_.size());
     outgoing_ = grpc::ByteBuffer(&copy, 1);
     StartWrite(&outgoing_);
@@ -32,6 +50,7 @@ class EchoReactor final : public grpc::ServerGenericBidiReactor {
   }
   void OnDone() override { delete this; }
 
+  const std::chrono::nanoseconds busy_;
   grpc::ByteBuffer incoming_, outgoing_;
   grpc::Slice answer_;
 };
@@ -41,8 +60,8 @@ class EchoReactor final : public grpc::ServerGenericBidiReactor {
 class EchoServer::Service final : public grpc::CallbackGenericService {
  private:
   grpc::ServerGenericBidiReactor* CreateReactor(
-      grpc::GenericCallbackServerContext* /*context*/) override {
-    return new EchoReactor;
+      grpc::GenericCallbackServerContext* context) override {
+    return new EchoReactor(BusyTimeOf(context->method()));
   }
 };
 

@@ -10,10 +10,11 @@
 
 namespace posespace {
 
-// What Play is measured against: a server with Play's transport settings, whose one bidirectional
-// method, of any name, answers each message by a copy of the stream's first one.  So it carries the
-// same bytes in both directions, and neither understands nor computes any.  The first message of a
-// stream is not answered.
+// What Play is measured against: a server with Play's transport settings, whose bidirectional
+// methods answer each message by a copy of the stream's first one.  So they carry the same bytes in
+// both directions, and neither understand nor compute any.  The first message of a stream is not
+// answered.  A method whose name ends in "/N" keeps its thread busy for N nanoseconds before each
+// answer, touching no memory: as long as Play blends.
 class EchoServer {
  public:
   EchoServer();  // at a port of its own
