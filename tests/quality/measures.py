@@ -105,9 +105,9 @@ def angles(mesh: posespace.Mesh) -> Points:
     return np.concatenate(found)
 
 
-def random_weights(count: int) -> NDArray[np.float64]:
-    """(BLENDS, count): uniform over all in-betweens, the same in every run."""
-    return np.random.default_rng(1).dirichlet(np.ones(count), BLENDS)
+def random_weights(count: int, blends: int = BLENDS) -> NDArray[np.float64]:
+    """(blends, count): uniform over all in-betweens, the same in every run."""
+    return np.random.default_rng(1).dirichlet(np.ones(count), blends)
 
 
 def edge_rms(mesh: posespace.Mesh, weights: Points, vertices: Points) -> float:
@@ -127,18 +127,27 @@ def edge_rms(mesh: posespace.Mesh, weights: Points, vertices: Points) -> float:
 
 @dataclass(frozen=True)
 class Blending:
-    """Ten random in-betweens by one method."""
+    """Random in-betweens by one method."""
 
     folded: int  # frames with a triangle that is not positive
     edge_rms: float  # mean over the frames
 
 
 def blending(
-    session: posespace.Session, mesh: posespace.Mesh, method: posespace.BlendMethod
+    session: posespace.Session,
+    mesh: posespace.Mesh,
+    method: posespace.BlendMethod,
+    *,
+    blends: int = BLENDS,
+    refits: int | None = None,
 ) -> Blending:
-    rows = random_weights(len(mesh.shape_ids))
+    rows = random_weights(len(mesh.shape_ids), blends)
     frames = [
-        session.blend(weights=dict(zip(mesh.shape_ids, row.tolist(), strict=True)), method=method)
+        session.blend(
+            weights=dict(zip(mesh.shape_ids, row.tolist(), strict=True)),
+            method=method,
+            refits=refits,
+        )
         for row in rows
     ]
     return Blending(

@@ -14,6 +14,7 @@ import json
 import shutil
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,6 +37,7 @@ Points = NDArray[np.float64]
 OURS = "posespace"
 NEARLY = 1e-6  # libraries answer the drawings themselves, with their own points, at 0 and 1
 TIMES = [NEARLY, *(k / 10 for k in range(1, 10)), 1 - NEARLY]
+MANY = 1000  # of our frames in a call that is timed
 SAMPLES = 200  # moving points whose distances are measured
 GENERATED = (
     "articulated", "glyph-S", "glyph-2", "glyph-G", "glyph-E", "bent-bars", "combs", "star-shaped",
@@ -59,6 +61,14 @@ class Pair:
 
 
 @dataclass(frozen=True)
+class Frames:
+    """A pair's in-betweens at TIMES, and what one costs."""
+
+    rings: list[Points]
+    microseconds: float
+
+
+@dataclass(frozen=True)
 class Measures:
     """Of a pair's nine in-betweens.
 
@@ -67,12 +77,14 @@ class Measures:
     edge_rms     Log ratio of the lengths between moving points to the weighted mean of their
                  lengths in the drawings, root mean square, mean over frames.
     slip         How far known places are put from where they belong, mean, % of the perimeter.
+    microseconds A frame, as often as it is asked for.
     """
 
     crossing: int
     area: float
     edge_rms: float
     slip: float | None
+    microseconds: float
 
 
 def pairs(client: posespace.Client) -> list[Pair]:
@@ -105,19 +117,27 @@ def _as_if_of_other_origin(ring: Points) -> Points:
     return np.roll(np.array(rows), len(rows) // 3, axis=0)
 
 
-def our_frames(client: posespace.Client, pair: Pair) -> list[Points]:
-    """The mesh's outline in every in-between; it encloses the drawings' within the tolerance."""
+def our_frames(client: posespace.Client, pair: Pair) -> Frames:
+    """The mesh's outline in every in-between; it encloses the drawings' within the tolerance.  The
+    time is that of whole meshes, asked for over gRPC by this client, many in a call."""
     session = client.create_session()
     session.put_shape("a", polygon=pair.a)
     session.put_shape("b", polygon=pair.b)
     session.build()
     rim = session.mesh().boundary[0]
     frames = [session.blend(weights={"a": 1 - t, "b": t}).vertices[rim] for t in TIMES]
+    session.set_placements({"a": (0.0, 0.0), "b": (1.0, 0.0)})
+    walk = np.stack([np.linspace(0, 1, MANY), np.zeros(MANY)], axis=1)
+    took = []
+    for _ in range(9):
+        start = time.perf_counter()
+        session.blend_many(walk)
+        took.append((time.perf_counter() - start) / MANY)
     session.delete()
-    return [frame.astype(float) for frame in frames]
+    return Frames([frame.astype(float) for frame in frames], 1e6 * float(np.median(took)))
 
 
-def their_frames(found: list[Pair]) -> dict[str, list[list[Points] | None]]:
+def their_frames(found: list[Pair]) -> dict[str, list[Frames | None]]:
     folder = ROOT / "build/peers"
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("package.json", "frames.mjs"):
@@ -133,20 +153,21 @@ def their_frames(found: list[Pair]) -> dict[str, list[list[Points] | None]]:
         text=True,
         check=True,
     )
-    frames: dict[str, list[list[Points] | None]] = {}
+    frames: dict[str, list[Frames | None]] = {}
     for library, answers in json.loads(answered.stdout).items():
+        frames[library] = []
         for pair, answer in zip(found, answers, strict=True):
-            if isinstance(answer, dict):
+            if "error" in answer:
                 print(f"{library}, {pair.name}: {answer['error']}", file=sys.stderr)
-        frames[library] = [
-            None if isinstance(answer, dict) else [np.array(ring, dtype=float) for ring in answer]
-            for answer in answers
-        ]
+                frames[library].append(None)
+                continue
+            rings = [np.array(ring, dtype=float) for ring in answer["rings"]]
+            frames[library].append(Frames(rings, answer["microseconds"]))
     return frames
 
 
-def measure(pair: Pair, frames: list[Points]) -> Measures:
-    first, *between, last = frames
+def measure(pair: Pair, frames: Frames) -> Measures:
+    first, *between, last = frames.rings
     # Moving points are even along the first drawing; each stays at its place between two vertices.
     shares = np.interp(
         np.arange(SAMPLES) / SAMPLES, np.append(turns(first), 1.0), np.arange(len(first) + 1)
@@ -175,6 +196,7 @@ def measure(pair: Pair, frames: list[Points]) -> Measures:
         area=min(areas),
         edge_rms=float(np.mean(ratios)),
         slip=None if pair.known is None else slip(pair.known, first, last),
+        microseconds=frames.microseconds,
     )
 
 
@@ -217,7 +239,17 @@ def table(found: list[Pair], measured: dict[str, list[Measures | None]]) -> str:
             f"{np.median([row.edge_rms for row in rows]):.2f} · {np.median(slips):.1f}"
         )
     lines.append("| **crossing in all; medians** | " + " | ".join(over) + " |")
+    lines.append("| **microseconds a frame** | " + " | ".join(_times(measured)) + " |")
     return "\n".join(lines) + "\n"
+
+
+def _times(measured: dict[str, list[Measures | None]]) -> list[str]:
+    """Median and extremes over pairs."""
+    cells = []
+    for rows in measured.values():
+        times = [row.microseconds for row in rows if row is not None]
+        cells.append(f"{np.median(times):.0f} ({min(times):.0f}-{max(times):.0f})")
+    return cells
 
 
 def _cell(row: Measures | None) -> str:
@@ -236,7 +268,7 @@ def main() -> None:
         posespace.connect(server.address, timeout=120) as client,
     ):
         found = pairs(client)
-        frames: dict[str, list[list[Points] | None]] = {
+        frames: dict[str, list[Frames | None]] = {
             OURS: [our_frames(client, pair) for pair in found],
             **their_frames(found),
         }

@@ -2,8 +2,9 @@
 // In-betweens of pairs of rings by each library.
 //
 // Reads {"pairs": [{"a": [[x, y], ...], "b": ...}], "times": [0..1, ...]} from standard input, writes
-// {library: [per pair: [per time: ring] or {"error": text}]}.  Vertex k of all rings of a pair is the
-// same moving point.
+// {library: [per pair: {"rings": [per time: ring], "microseconds": of a frame} or {"error": text}]}.
+// Vertex k of all rings of a pair is the same moving point.  A frame is timed as the library gives
+// it, a path or points, once its code is warm.
 
 import * as polymorph from 'polymorph-js';
 import { compile, morph } from 'svg-path-morph';
@@ -45,28 +46,52 @@ function evenly(ring) {
   return even;
 }
 
+const asItIs = (ring) => ring;
+
+// How each makes its interpolator of a pair, and how a ring is read from what that gives.
 const libraries = {
-  flubber: ({ a, b }) => flubber.interpolate(a, b, { string: false, maxSegmentLength: 4 }),
-  'polymorph-js': ({ a, b }) => {
-    const between = polymorph.interpolate([pathOf(a), pathOf(b)], { precision: 6 });
-    return (t) => ringOf(between(t));
+  flubber: {
+    prepare: ({ a, b }) => flubber.interpolate(a, b, { string: false, maxSegmentLength: 4 }),
+    read: asItIs,
   },
-  'svg-path-morph': ({ a, b }) => {
-    const both = compile([pathOf(evenly(a)), pathOf(evenly(b))]);
-    return (t) => ringOf(morph(both, [1 - t, t]));
+  'polymorph-js': {
+    prepare: ({ a, b }) => polymorph.interpolate([pathOf(a), pathOf(b)], { precision: 6 }),
+    read: ringOf,
   },
-  'd3-interpolate-path': ({ a, b }) => {
-    const between = interpolatePath(pathOf(a), pathOf(b));
-    return (t) => ringOf(between(t));
+  'svg-path-morph': {
+    prepare: ({ a, b }) => {
+      const both = compile([pathOf(evenly(a)), pathOf(evenly(b))]);
+      return (t) => morph(both, [1 - t, t]);
+    },
+    read: ringOf,
+  },
+  'd3-interpolate-path': {
+    prepare: ({ a, b }) => interpolatePath(pathOf(a), pathOf(b)),
+    read: ringOf,
   },
 };
 
+// The median over rounds, each of a few milliseconds at the least.
+function microsecondsOf(between) {
+  const rounds = 9, leastMilliseconds = 4;
+  const found = [];
+  for (let round = 0; round < rounds; ++round) {
+    const start = performance.now();
+    let count = 0;
+    while (performance.now() - start < leastMilliseconds) between((++count % 97) / 97);
+    found.push((1000 * (performance.now() - start)) / count);
+  }
+  return found.sort((x, y) => x - y)[(rounds - 1) / 2];
+}
+
 const { pairs, times } = JSON.parse(readFileSync(0, 'utf8'));
 const answer = {};
-for (const [name, prepare] of Object.entries(libraries)) {
+for (const [name, { prepare, read }] of Object.entries(libraries)) {
   answer[name] = pairs.map((pair) => {
     try {
-      return times.map(prepare(pair));
+      const between = prepare(pair);
+      const rings = times.map((t) => read(between(t)));
+      return { rings, microseconds: microsecondsOf(between) };
     } catch (error) {
       return { error: String(error) };
     }
