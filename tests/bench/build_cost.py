@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What builds cost on one core, and how that grows with drawings and their points.
 
-    build/venv/bin/python tests/bench/build_cost.py [--rounds R] [--cpu C]
+    build/venv/bin/python tests/bench/build_cost.py [--rounds R] [--cpu C] [--plot FILE]
 
-Prints Markdown.  Every figure is the least of R rounds, by what the build reports of its stages, in
-a service that may use one core only; the spread says how far the other rounds were above it.
+Prints Markdown, and draws the growth if asked to, which needs matplotlib.  Every figure is the
+least of R rounds, by what the build reports of its stages, in a service that may use one core only;
+the spread says how far the other rounds were above it.
 """
 
 from __future__ import annotations
@@ -83,6 +84,7 @@ def _rough(ring: Points, count: int, random: np.random.Generator) -> Points:
 
 
 STAGES = ("matching", "simplification", "triangulation", "improvement", "alignment", "weights")
+PLOTTED = tuple(stage for stage in STAGES if stage != "triangulation")  # under a millisecond
 
 
 def line(name: str, seconds: dict[str, float], spread: float, target: str = "") -> str:
@@ -106,10 +108,31 @@ def exponents(sizes: list[int], costs: list[dict[str, float]]) -> str:
     return f"total {total:.1f} ({', '.join(parts)})"
 
 
+def plot(file: Path, panels: dict[str, tuple[list[int], list[dict[str, float]]]]) -> None:
+    """Seconds by size, both logarithmic: the total and each stage, a panel for each size."""
+    import matplotlib.pyplot as plt
+
+    plt.rcParams["svg.fonttype"] = "none"
+    figure, axes = plt.subplots(1, len(panels), figsize=(9, 3.6), sharey=True)
+    for axis, (name, (sizes, costs)) in zip(axes, panels.items(), strict=True):
+        axis.plot(sizes, [sum(c.values()) for c in costs], "k-o", label="total")
+        for stage in PLOTTED:
+            axis.plot(sizes, [c.get(stage, 0.0) for c in costs], "-", marker=".", label=stage)
+        axis.set(xscale="log", yscale="log", ylim=(1e-3, None), xlabel=name)
+        axis.set_xticks(sizes, [f"{size:,}" for size in sizes])
+        axis.minorticks_off()
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel("seconds")
+    axes[-1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.tight_layout()
+    figure.savefig(file, metadata={"Date": None, "Creator": None})
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--cpu", type=int, default=max(os.sched_getaffinity(0)))
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="an SVG")
     arguments = parser.parse_args()
     os.sched_setaffinity(0, {arguments.cpu})  # what the service inherits
     with (
@@ -132,6 +155,15 @@ def main() -> None:
             print(line(f"N = {count}, n = 1,000", *found))
         for n, found in zip(points, by_points, strict=True):
             print(line(f"N = 4, n = {n:,}", *found))
+    if arguments.plot:
+        only = [found for found, _ in by_count], [found for found, _ in by_points]
+        plot(
+            arguments.plot,
+            {
+                "drawings of 1,000 points": (counts, only[0]),
+                "points of each of 4 drawings": (points, only[1]),
+            },
+        )
     print(f"\nPower of N: {exponents(counts, [found for found, _ in by_count])}.")
     print(f"Power of n: {exponents(points, [found for found, _ in by_points])}.")
 
