@@ -173,6 +173,14 @@ void ToMessage(const BlendOptions& options, v1::BlendOptions* message) {
   message->set_sigma(options.sigma);
   message->set_stretch(NumberOf(options.stretch));
   message->set_repair(options.repair);
+  if (options.anchor) {
+    v1::MeshPoint& anchor = *message->mutable_anchor();
+    anchor.set_triangle(options.anchor->triangle);
+    anchor.set_b(options.anchor->b);
+    anchor.set_c(options.anchor->c);
+  } else {
+    message->clear_anchor();
+  }
 }
 
 void ToMessage(ShapeSource source, v1::PutShapeRequest* message) {

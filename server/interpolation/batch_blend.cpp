@@ -31,12 +31,17 @@ struct BatchBlend::Tables {
   void SolveAlone(BlendJob& job, const BlendOptions& options) const;
   void SetWeights(const BlendJob& job, ShearLimit limit, int lane, int lanes,
                   const BlendScratch& scratch) const;
-  void SetPlacing(const BlendJob& job, int lane, int lanes, const BlendScratch& scratch) const;
-  void Finish(BlendJob& job, int lane, int lanes, const BlendScratch& scratch) const;
+  void SetPlacing(const BlendJob& job, const BlendOptions& options, int lane, int lanes,
+                  const BlendScratch& scratch) const;
+  void Hold(const MeshPoint& anchor, const BlendJob& job, int lane, int lanes,
+            const BlendScratch& scratch) const;
+  void Finish(BlendJob& job, const BlendOptions& options, int lane, int lanes,
+              const BlendScratch& scratch) const;
   void SolveFast(std::span<BlendJob> jobs, const BlendOptions& options) const;
   void SolveExactly(BlendJob& job, const BlendOptions& options) const;
   void Mend(BlendJob& job, const BlendOptions& options) const;
-  void PlaceFolded(BlendJob& job, int lane, int lanes, const BlendScratch& scratch) const;
+  void PlaceFolded(BlendJob& job, const BlendOptions& options, int lane, int lanes,
+                   const BlendScratch& scratch) const;
   double WorstError() const;
   void ChoosePolishes();
   void CountFoldsOf(BlendJob& job) const {
@@ -62,9 +67,10 @@ void BatchBlend::Tables::SetWeights(const BlendJob& job, ShearLimit limit, int l
   }
 }
 
-// The turn by the mean rotation, and shifts that bring each part's centroid to sum w_i c_i.
-void BatchBlend::Tables::SetPlacing(const BlendJob& job, int lane, int lanes,
-                                    const BlendScratch& scratch) const {
+// The turn by the mean rotation, and shifts that bring each part's centroid to sum w_i c_i, or the
+// anchor to its place.
+void BatchBlend::Tables::SetPlacing(const BlendJob& job, const BlendOptions& options, int lane,
+                                    int lanes, const BlendScratch& scratch) const {
   const RigidModel& model = exact.model();
   const auto row = [&](auto* rows, int k) -> auto& {
     return rows[static_cast<std::size_t>(k) * lanes + lane];
@@ -94,10 +100,31 @@ void BatchBlend::Tables::SetPlacing(const BlendJob& job, int lane, int lanes,
     row(scratch.placing, 3 + 2 * part) =
         static_cast<float>(target.y() - (s * centroid.x() + c * centroid.y()));
   }
+  if (options.anchor) Hold(*options.anchor, job, lane, lanes, scratch);
+}
+
+// Shifts all parts alike, so that the anchor comes to its place.
+void BatchBlend::Tables::Hold(const MeshPoint& anchor, const BlendJob& job, int lane, int lanes,
+                              const BlendScratch& scratch) const {
+  const RigidModel& model = exact.model();
+  const auto at = [&](int k) { return static_cast<std::size_t>(k) * lanes + lane; };
+  const float* const placing = scratch.placing;
+  const int part = layout.PartOf(model.triangles(anchor.triangle, 0));
+  const Point solved = anchor.In(model.triangles, [&](int v) {
+    const std::size_t place = at(layout.place_of[v]);
+    return Point(scratch.z_x[place], scratch.z_y[place]);
+  });
+  const double c = placing[at(0)], s = placing[at(1)];
+  const Point now(c * solved.x() - s * solved.y() + placing[at(2 + 2 * part)],
+                  s * solved.x() + c * solved.y() + placing[at(3 + 2 * part)]);
+  const Point shift = AnchorPlace(anchor, model.triangles, model.poses, job.weights) - now;
+  for (int k = 2; k < 2 + 2 * layout.tables.num_parts; ++k) {
+    scratch.placing[at(k)] += static_cast<float>(shift[k % 2]);
+  }
 }
 
 // Counts folds where there may be any.
-void BatchBlend::Tables::Finish(BlendJob& job, int lane, int lanes,
+void BatchBlend::Tables::Finish(BlendJob& job, const BlendOptions& options, int lane, int lanes,
                                 const BlendScratch& scratch) const {
   job.folds = 0;
   if (scratch.clear[lane] > 0.0f) return;
@@ -116,7 +143,7 @@ void BatchBlend::Tables::Finish(BlendJob& job, int lane, int lanes,
     const double unit_area = scratch.moments[3 * static_cast<std::size_t>(part) * lanes + lane];
     const double signed_area = layout.size * layout.size * unit_area;
     if (signed_area > kLeastSignedArea * absolute_area) continue;
-    PlaceFolded(job, lane, lanes, scratch);
+    PlaceFolded(job, options, lane, lanes, scratch);
     CountFoldsOf(job);
     return;
   }
@@ -124,8 +151,8 @@ void BatchBlend::Tables::Finish(BlendJob& job, int lane, int lanes,
 
 // Where folds leave a part next to no area, its boundary gives no centroid: as RigidBlend places
 // it.
-void BatchBlend::Tables::PlaceFolded(BlendJob& job, int lane, int lanes,
-                                     const BlendScratch& scratch) const {
+void BatchBlend::Tables::PlaceFolded(BlendJob& job, const BlendOptions& options, int lane,
+                                     int lanes, const BlendScratch& scratch) const {
   const RigidModel& model = exact.model();
   const BlendTables& tables = layout.tables;
   Points solved(tables.num_vertices, 2);
@@ -142,10 +169,10 @@ void BatchBlend::Tables::PlaceFolded(BlendJob& job, int lane, int lanes,
     shifts += job.weights[i] * model.centroids[i];
   }
   for (Eigen::Index v = 0; v < solved.rows(); ++v) {
-    const Point placed = (solved.row(v) + shifts.row(model.parts.part_of[v])).transpose();
-    job.vertices[2 * v] = static_cast<float>(placed.x());
-    job.vertices[2 * v + 1] = static_cast<float>(placed.y());
+    solved.row(v) += shifts.row(model.parts.part_of[v]);
   }
+  if (options.anchor) exact.Hold(*options.anchor, WeightsOf(job), &solved);
+  std::copy_n(solved.data(), solved.size(), job.vertices);
 }
 
 void BatchBlend::Tables::SolveGroup(std::span<BlendJob> jobs, const BlendOptions& options) const {
@@ -158,11 +185,11 @@ void BatchBlend::Tables::SolveGroup(std::span<BlendJob> jobs, const BlendOptions
   kernel.solve_group(layout.tables, std::clamp(options.refits, 0, 3), scratch);
   float* out[16] = {};
   for (int lane = 0; lane < lanes; ++lane) {
-    SetPlacing(jobs[lane < count ? lane : 0], lane, lanes, scratch);
+    SetPlacing(jobs[lane < count ? lane : 0], options, lane, lanes, scratch);
     if (lane < count) out[lane] = jobs[lane].vertices;
   }
   kernel.place_group(layout.tables, count, scratch, out);
-  for (int lane = 0; lane < count; ++lane) Finish(jobs[lane], lane, lanes, scratch);
+  for (int lane = 0; lane < count; ++lane) Finish(jobs[lane], options, lane, lanes, scratch);
 }
 
 void BatchBlend::Tables::SolveAlone(BlendJob& job, const BlendOptions& options) const {
@@ -170,9 +197,9 @@ void BatchBlend::Tables::SolveAlone(BlendJob& job, const BlendOptions& options) 
   const BlendScratch scratch = ThreadScratch(layout.tables, 1);
   SetWeights(job, options.shear_limit, 0, 1, scratch);
   kernel.solve_alone(layout.tables, std::clamp(options.refits, 0, 3), scratch);
-  SetPlacing(job, 0, 1, scratch);
+  SetPlacing(job, options, 0, 1, scratch);
   kernel.place_alone(layout.tables, scratch, job.vertices);
-  Finish(job, 0, 1, scratch);
+  Finish(job, options, 0, 1, scratch);
 }
 
 void BatchBlend::Tables::ChoosePolishes() {

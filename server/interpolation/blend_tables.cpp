@@ -58,7 +58,8 @@ Result<void> BlendLayout::Fill(const RigidModel& model) {
   part_begin.assign(factor.components.begin(), factor.components.end());
   const int num_parts = static_cast<int>(part_begin.size());
   part_begin.push_back(num_vertices);
-  Indices place_of(factor.order.size()), part_of_place(factor.order.size());
+  place_of.resize(factor.order.size());
+  Indices part_of_place(factor.order.size());
   for (int part = 0; part < num_parts; ++part) {
     model_part.push_back(model.parts.part_of[factor.order[part_begin[part]]]);
     for (int p = part_begin[part]; p < part_begin[part + 1]; ++p) {
@@ -158,6 +159,11 @@ Result<void> BlendLayout::Fill(const RigidModel& model) {
             &factor,
             coefficients.get()};
   return {};
+}
+
+int BlendLayout::PartOf(int vertex) const {
+  const auto after = std::upper_bound(part_begin.begin(), part_begin.end(), place_of[vertex]);
+  return static_cast<int>(after - part_begin.begin()) - 1;
 }
 
 }  // namespace posespace

@@ -24,6 +24,7 @@ struct BlendLayout {
   std::vector<std::int32_t> incident, incident_begin, boundary, boundary_begin, part_origin,
       part_begin;
   std::vector<int> model_part;  // of the tables' parts, the model's numbers
+  std::vector<int> place_of;    // of the mesh's vertices
   double size = 0.0;            // drawing pixels a unit: the root of the rest triangles' area
   BlendTables tables = {};      // points into the above, and at `factor`
 
@@ -33,6 +34,8 @@ struct BlendLayout {
 
   // Fails  kInternal when the problem is singular in double.
   Result<void> Fill(const RigidModel& model);
+
+  int PartOf(int vertex) const;  // which of the tables' parts
 };
 
 }  // namespace posespace

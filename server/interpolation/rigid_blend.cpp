@@ -98,6 +98,7 @@ struct RigidBlend::Prepared {
   Points Linear(const Eigen::VectorXd& weights) const;
   Points Rigid(const TriangleMaps& maps, const GradientFit& fit, const Eigen::VectorXd& weights,
                const BlendOptions& options) const;
+  Points Blended(const Eigen::VectorXd& weights, const BlendOptions& options) const;
   void Place(const Eigen::VectorXd& weights, Points* vertices) const;
 };
 
@@ -113,17 +114,23 @@ Result<RigidBlend> RigidBlend::Prepare(const CompatibleMesh& mesh, std::vector<i
 }
 
 Points RigidBlend::At(const Eigen::VectorXd& weights, const BlendOptions& options) const {
-  const auto& [model, rigid_fit, paper_fit] = *prepared_;
+  Points vertices = prepared_->Blended(weights, options);
+  if (options.anchor) Hold(*options.anchor, weights, &vertices);
+  return vertices;
+}
+
+Points RigidBlend::Prepared::Blended(const Eigen::VectorXd& weights,
+                                     const BlendOptions& options) const {
   switch (options.method) {
     case BlendMethod::kRigid:
-      return prepared_->Rigid(model.rigid, rigid_fit, weights, options);
+      return Rigid(model.rigid, rigid_fit, weights, options);
     case BlendMethod::kPaper:
-      return prepared_->Rigid(model.paper, paper_fit, weights,
-                              {.shear_limit = options.shear_limit, .refits = 0});
+      return Rigid(model.paper, paper_fit, weights,
+                   {.shear_limit = options.shear_limit, .refits = 0});
     case BlendMethod::kLinear:
       break;
   }
-  return prepared_->Linear(weights);
+  return Linear(weights);
 }
 
 Points RigidBlend::Prepared::Linear(const Eigen::VectorXd& weights) const {
@@ -167,6 +174,16 @@ void RigidBlend::Prepared::Place(const Eigen::VectorXd& weights, Points* vertice
   }
 }
 
+void RigidBlend::Hold(const MeshPoint& anchor, const Eigen::VectorXd& weights,
+                      Points* vertices) const {
+  const RigidModel& model = prepared_->model;
+  const Point now =
+      anchor.In(model.triangles, [&](int v) -> Point { return vertices->row(v).transpose(); });
+  const Point wanted = AnchorPlace(anchor, model.triangles, model.poses,
+                                   {weights.data(), static_cast<std::size_t>(weights.size())});
+  vertices->rowwise() += (wanted - now).transpose();
+}
+
 Points RigidBlend::Mended(const Points& vertices, const Eigen::VectorXd& weights,
                           const BlendOptions& options) const {
   const auto& [model, rigid_fit, paper_fit] = *prepared_;
@@ -194,6 +211,7 @@ Points RigidBlend::Mended(const Points& vertices, const Eigen::VectorXd& weights
   Points mended = Unfolded(model.triangles, targets, vertices,
                            [&fit](const Eigen::MatrixXd& right) { return fit.SolveNormal(right); });
   prepared_->Place(weights, &mended);
+  if (options.anchor) Hold(*options.anchor, weights, &mended);
   return mended;
 }
 

@@ -3,11 +3,13 @@
 #define POSESPACE_INTERPOLATION_RIGID_BLEND_H_
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/mesh.h"
 #include "geometry/result.h"
+#include "interpolation/anchor.h"
 #include "interpolation/rigid_model.h"
 #include "interpolation/shear_limit.h"
 
@@ -35,6 +37,7 @@ struct BlendOptions {
   int refits = 3;  // 0 .. 3 rotation refits (method kRigid)
   StretchBlend stretch = StretchBlend::kLinear;
   bool repair = false;  // unfold the result where it folds, at the cost of milliseconds
+  std::optional<MeshPoint> anchor = {};  // place the result by it instead of by centroids
 
   bool operator==(const BlendOptions&) const = default;
 };
@@ -57,7 +60,9 @@ struct BlendOptions {
 // Placement     The area centroid of the result lies at sum w_i c_i, c_i the area centroid of pose
 //               i.  An area centroid is sum_t a_t m_t / sum_t a_t over the mesh's own triangles:
 //               a_t signed area, m_t mean of the corners; with |a_t| instead where folds leave less
-//               than 1/1000 of the area.  (kLinear needs no placing.)
+//               than 1/1000 of the area.  (kLinear needs no placing.)  With an anchor the result is
+//               then moved as a whole so that the anchor lies at sum w_i times its place in pose i:
+//               a foot that stands in all poses stands.
 // Parts         of a mesh that share no edge are unwrapped, those that share no vertex placed, each
 //               by itself.
 //
@@ -90,6 +95,9 @@ class RigidBlend {
   // kRigid's.
   Points Mended(const Points& vertices, const Eigen::VectorXd& weights,
                 const BlendOptions& options) const;
+
+  // Moves all of `vertices`, a blend at these weights, so that the anchor lies in its place.
+  void Hold(const MeshPoint& anchor, const Eigen::VectorXd& weights, Points* vertices) const;
 
   // The area-weighted mean rotation of each pose relative to the rest shape, radians, in (-pi, pi]
   // before turns.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rpc/query_convert.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +10,18 @@
 
 namespace posespace {
 namespace {
+
+Result<MeshPoint> MeshPointFromProto(const v1::MeshPoint& point) {
+  constexpr double kRounding = 1e-6;
+  const double least = std::min({point.b(), point.c(), 1.0 - point.b() - point.c()});
+  if (!(least >= -kRounding)) {
+    return ErrorAt(ErrorCode::kInvalidOption, "options.anchor",
+                   "is not in its triangle: b = " + std::to_string(point.b()) +
+                       ", c = " + std::to_string(point.c()) +
+                       ", which must not be negative nor sum to over 1");
+  }
+  return MeshPoint{point.triangle(), point.b(), point.c()};
+}
 
 Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
   BlendOptions blend;
@@ -61,6 +74,7 @@ Result<BlendOptions> BlendOptionsFromProto(const v1::BlendOptions& options) {
                      "is " + std::to_string(options.stretch()) + ", which is not known here");
   }
   blend.repair = options.repair();
+  if (options.has_anchor()) blend.anchor = TRY(MeshPointFromProto(options.anchor()));
   if (options.has_refits()) blend.refits = options.refits();
   if (blend.refits < 0 || blend.refits > 3) {
     return ErrorAt(ErrorCode::kInvalidOption, "options.refits",

@@ -398,6 +398,12 @@ Result<void> PoseSpace::Weigh(const Query& query, std::span<double> weights) con
     return Refused(ErrorCode::kInvalidOption, "options.refits",
                    "refits is " + std::to_string(query.options.refits) + ", not 0 to 3");
   }
+  const std::optional<MeshPoint>& anchor = query.options.anchor;
+  if (anchor && (anchor->triangle < 0 || anchor->triangle >= mesh().num_triangles())) {
+    return Refused(ErrorCode::kInvalidOption, "options.anchor.triangle",
+                   "the anchor's triangle is " + std::to_string(anchor->triangle) +
+                       ", and the mesh has 0 to " + std::to_string(mesh().num_triangles() - 1));
+  }
   if (!(query.sigma >= 0.0 && query.sigma <= 1.0)) {
     return Refused(ErrorCode::kInvalidOption, "options.sigma", "sigma is not within 0 to 1");
   }

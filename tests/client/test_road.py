@@ -210,6 +210,43 @@ def test_repair_mends_what_folds_and_says_so(walk):
     assert mended.folds == 0 and mended.mended == folded.folds
 
 
+def test_an_anchor_stays_at_the_mean_of_its_places(walk):
+    mesh = walk.mesh()
+    foot = mesh.vertices["stand"][np.argmax(mesh.vertices["stand"][:, 1])]
+    inside = 0.98 * foot + 0.02 * mesh.vertices["stand"].mean(axis=0)
+    anchor = mesh.point("stand", inside)
+    corners, shares = mesh.triangles[anchor.triangle], (1 - anchor.b - anchor.c, anchor.b, anchor.c)
+
+    def place(vertices):
+        return shares @ vertices[corners].astype(float)
+
+    assert np.allclose(place(mesh.vertices["stand"]), inside)
+    free = walk.blend(at=(0.3, 0.4))
+    wanted = sum(free.weights[name] * place(mesh.vertices[name]) for name in mesh.shape_ids)
+    held = walk.blend(at=(0.3, 0.4), anchor=anchor)
+    assert np.abs(place(held.vertices) - wanted).max() < 1e-3
+    assert np.abs(place(free.vertices) - wanted).max() > 0.05
+    assert np.ptp(held.vertices - free.vertices, axis=0).max() < 1e-3  # moved as a whole
+    assert np.array_equal(walk.blend_many([(0.3, 0.4)], anchor=anchor)[0], held.vertices)
+    with walk.play() as player:
+        (played,) = player.frames([(0.3, 0.4)], anchor=anchor)
+    assert np.array_equal(played.vertices, held.vertices)
+
+
+def test_an_anchor_outside_the_mesh_is_refused(walk):
+    mesh = walk.mesh()
+    with pytest.raises(posespace.InvalidArgument, match=r"'stand' has nothing at \(-50"):
+        mesh.point("stand", (-50.0, 10.0))
+    with pytest.raises(posespace.NotFound, match="nobody"):
+        mesh.point("nobody", (0.0, 0.0))
+    last = len(mesh.triangles) - 1
+    walk.blend(at=(0, 0), anchor=posespace.MeshPoint(last, 0.2, 0.2))
+    with pytest.raises(posespace.InvalidArgument, match=f"has 0 to {last}"):
+        walk.blend(at=(0, 0), anchor=posespace.MeshPoint(last + 1, 0.2, 0.2))
+    with pytest.raises(posespace.InvalidArgument, match="anchor"):
+        walk.blend(at=(0, 0), anchor=posespace.MeshPoint(0, 0.6, 0.5))
+
+
 def test_blend_many_is_blend_many_times(walk):
     points = np.random.default_rng(5).uniform(-1, 2, (600, 2))  # more than one message holds
     many = walk.blend_many(points)

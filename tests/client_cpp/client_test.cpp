@@ -223,6 +223,39 @@ TEST_F(ClientTest, MixesStretchAndRepairsAsAsked) {
   EXPECT_EQ(repaired.mended, 0);
 }
 
+TEST_F(ClientTest, HoldsAnAnchor) {
+  const Mesh mesh = stars().Mesh();
+  const std::string& first = mesh.poses[0].shape_id;
+  const MeshPoint corner{0, 0.25, 0.5};
+  const auto place_in = [&](const auto& vertices) {
+    Point sum;
+    for (const auto& [k, weight] : {std::pair(0, 0.25), {1, 0.25}, {2, 0.5}}) {
+      sum.x += weight * vertices[2 * mesh.triangles[k]];
+      sum.y += weight * vertices[2 * mesh.triangles[k] + 1];
+    }
+    return sum;
+  };
+  const MeshPoint found = mesh.At(first, place_in(mesh.poses[0].vertices));
+  EXPECT_EQ(found.triangle, corner.triangle);
+  EXPECT_NEAR(found.b, corner.b, 1e-9);
+  EXPECT_NEAR(found.c, corner.c, 1e-9);
+
+  const Frame frame = stars().Blend({0.3, 0.4}, {.anchor = found});
+  Point wanted;
+  for (const PoseMesh& pose : mesh.poses) {
+    const Point place = place_in(pose.vertices);
+    wanted.x += frame.weights.at(pose.shape_id) * place.x;
+    wanted.y += frame.weights.at(pose.shape_id) * place.y;
+  }
+  const Point is = place_in(frame.vertices);
+  EXPECT_NEAR(is.x, wanted.x, 1e-3);
+  EXPECT_NEAR(is.y, wanted.y, 1e-3);
+
+  EXPECT_THROW((void)mesh.At("nobody", {0, 0}), Error);
+  EXPECT_THROW((void)mesh.At(first, {-1e6, 0}), Error);
+  EXPECT_THROW((void)stars().Blend({0, 0}, {.anchor = MeshPoint{1 << 20, 0, 0}}), Error);
+}
+
 TEST_F(ClientTest, BlendsAtThePointAndAtItsWeightsAlike) {
   const Frame at = stars().Blend({0.3, 0.4});
   const Frame by_weights = stars().Blend(at.weights);

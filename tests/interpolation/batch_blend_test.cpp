@@ -213,6 +213,49 @@ TEST(BatchBlend, PlacesWhatFoldsAwayAsTheExactBlendDoes) {
   }
 }
 
+TEST(BatchBlend, HoldsAnAnchorInEveryWayToBlend) {
+  const CompatibleMesh mesh = Limbs(6, 3, 2.5);
+  const BatchBlend blend = Prepared(mesh);
+  const MeshPoint anchor{mesh.num_triangles() / 2, 0.25, 0.625};
+  std::mt19937 random(9);
+  Weights weights;
+  for (int k = 0; k < 20; ++k) weights.push_back(RandomWeights(4, &random));
+  weights.push_back(6.0 * weights.back());
+  weights.back()[0] -= 5.0;  // folds
+  for (const BlendOptions& options :
+       {BlendOptions{}, BlendOptions{.refits = 0}, BlendOptions{.repair = true},
+        BlendOptions{.stretch = StretchBlend::kLog}, BlendOptions{.method = BlendMethod::kPaper},
+        BlendOptions{.method = BlendMethod::kLinear}}) {
+    BlendOptions held = options;
+    held.anchor = anchor;
+    std::vector<FloatPoints> all(weights.size(), FloatPoints(mesh.num_vertices(), 2));
+    std::vector<BlendJob> jobs;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      jobs.push_back({{weights[k].data(), 4}, all[k].data()});
+    }
+    blend.Solve(jobs, held);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const Point wanted = AnchorPlace(anchor, mesh.triangles, mesh.poses,
+                                       {weights[k].data(), static_cast<std::size_t>(4)});
+      const Point is = anchor.In(
+          mesh.triangles, [&](int v) -> Point { return all[k].row(v).cast<double>().transpose(); });
+      EXPECT_LT((is - wanted).norm(), 1e-5 * SizeOf(mesh) * weights[k].lpNorm<1>()) << k;
+
+      FloatPoints free(mesh.num_vertices(), 2), alone = free;
+      BlendJob freely{{weights[k].data(), 4}, free.data()};
+      blend.Solve({&freely, 1}, options);
+      BlendJob again{{weights[k].data(), 4}, alone.data()};
+      blend.Solve({&again, 1}, held);
+      EXPECT_EQ(alone, all[k]) << "alone and in a batch";
+      if (again.mended > 0) continue;  // mending may find another way
+      const FloatPoints moved = all[k] - free;
+      EXPECT_LT((moved.rowwise() - moved.row(0)).cwiseAbs().maxCoeff(),
+                2e-5 * SizeOf(mesh) * weights[k].lpNorm<1>())
+          << "moved as a whole " << k;
+    }
+  }
+}
+
 TEST(BatchBlend, MendsWhatFoldsWhenAskedAndNothingElse) {
   const CompatibleMesh mesh = Limbs(6, 3, 2.5);
   const BatchBlend blend = Prepared(mesh);

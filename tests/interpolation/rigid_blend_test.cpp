@@ -310,6 +310,28 @@ TEST(RigidBlend, UnwrapsAroundAHole) {
   }
 }
 
+TEST(RigidBlend, HoldsAnAnchorAndMovesAllPartsWithIt) {
+  CompatibleMesh mesh;
+  mesh.triangles.resize(2, 3);
+  mesh.triangles << 0, 1, 2, 3, 4, 5;
+  mesh.poses = {PointsOf("0 0, 2 0, 0 2, 10 0, 12 0, 10 2"),
+                PointsOf("0 0, 0 2, -2 0, 10 9, 12 9, 10 11")};  // the first turned about a corner
+  const RigidBlend blend = Prepared(mesh);
+  const Eigen::Vector2d half(0.5, 0.5);
+  const Points free = blend.At(half);
+  EXPECT_GT(free.row(0).norm(), 0.1);
+  for (const auto method : {BlendMethod::kRigid, BlendMethod::kPaper, BlendMethod::kLinear}) {
+    const Points held = blend.At(half, {.method = method, .anchor = MeshPoint{0, 0.0, 0.0}});
+    EXPECT_LT(held.row(0).norm(), 1e-12) << "the corner that stays in both poses";
+    if (method != BlendMethod::kRigid) continue;
+    EXPECT_LT(Apart(held, free.rowwise() - free.row(0)), 1e-12);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const Points pose = blend.At(Eigen::Vector2d::Unit(i), {.anchor = MeshPoint{1, 0.3, 0.3}});
+    EXPECT_LT(Apart(pose, mesh.poses[i]), 1e-12) << "poses stay exact";
+  }
+}
+
 TEST(RigidBlend, PlacesSeparatePartsEachByItself) {
   CompatibleMesh mesh;
   mesh.triangles.resize(2, 3);

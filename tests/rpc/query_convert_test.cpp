@@ -76,6 +76,23 @@ TEST(Query, SaysHowStretchIsMixedAndWhetherToRepair) {
   EXPECT_TRUE(QueryFromProto(query)->options.repair);
 }
 
+TEST(Query, TakesAnAnchorInItsTriangleAndNowhereElse) {
+  v1::Query query = At(0, 0);
+  EXPECT_FALSE(QueryFromProto(query)->options.anchor);
+  v1::MeshPoint& anchor = *query.mutable_options()->mutable_anchor();
+  anchor.set_triangle(7);
+  for (const auto& [b, c] : {std::pair(0.0, 0.0), {1.0, 0.0}, {0.0, 1.0}, {0.25, 0.5}}) {
+    anchor.set_b(b);
+    anchor.set_c(c);
+    EXPECT_EQ(QueryFromProto(query)->options.anchor, (MeshPoint{7, b, c}));
+  }
+  for (const auto& [b, c] : {std::pair(-0.001, 0.5), {0.5, -0.001}, {0.5, 0.501}, {kNan, 0.0}}) {
+    anchor.set_b(b);
+    anchor.set_c(c);
+    EXPECT_THAT(QueryFromProto(query), FailsSaying(ErrorCode::kInvalidOption, "options.anchor"));
+  }
+}
+
 TEST(Query, IsRefusedForEnumsItDoesNotKnow) {
   v1::Query query = At(0, 0);
   query.mutable_options()->set_method(static_cast<v1::BlendMethod>(9));

@@ -155,6 +155,7 @@ def blend_options(
     sigma: float,
     stretch: StretchBlend = "linear",
     repair: bool = False,
+    anchor: results.MeshPoint | None = None,
 ) -> pose_service_pb2.BlendOptions:
     """How to blend."""
     return make(
@@ -165,6 +166,9 @@ def blend_options(
         sigma=sigma,
         stretch=choice("stretch", stretch, _STRETCHES),
         repair=repair,
+        anchor=None
+        if anchor is None
+        else make(pose_service_pb2.MeshPoint, triangle=anchor.triangle, b=anchor.b, c=anchor.c),
     )
 
 

@@ -14,7 +14,7 @@ from posespace.channel import Channel
 from posespace.errors import Conflict, Error, NotBuilt, NotFound, Unavailable, error_of_reason
 from posespace.messages import BlendMethod, Place, ShearLimit, StretchBlend
 from posespace.play_stream import PlayStream
-from posespace.results import Frame
+from posespace.results import Frame, MeshPoint
 from posespace.v1 import pose_service_pb2
 
 if TYPE_CHECKING:
@@ -52,10 +52,13 @@ class Avatar:
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
     ) -> Item:
         """avatar.item(at=(0, 0.5)): a query as in Session.blend, to be answered by Player.tick."""
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
         query = messages.query(at, weights, self.shape_ids, options)
         message = pose_service_pb2.PlayRequest.Item(slot=self.slot, query=query)
         return Item(self, message, None if weights is None else self.shape_ids)
@@ -184,6 +187,7 @@ class Player:
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
         with_weights: bool = True,
         compact: bool = False,
@@ -202,7 +206,9 @@ class Player:
         other takes its place.
         """
         avatar = avatar or self.avatar
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
         under_way: deque[int] = deque()
 
         def oldest() -> Frame:

@@ -10,9 +10,13 @@ from datetime import datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from posespace.errors import Error
+from posespace.errors import Error, InvalidArgument, NotFound
 
 Point = tuple[float, float]
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,6 +164,21 @@ class SessionState:
     build: Build | None
 
 
+@dataclass(frozen=True)
+class MeshPoint:
+    """A place in a mesh, the same in every drawing and frame; made by Mesh.point.
+
+    It belongs to the mesh of that revision: a rebuild has other triangles.
+
+    triangle  Row of Mesh.triangles.
+    b, c      Weights of its second and third corner; the first has the rest.
+    """
+
+    triangle: int
+    b: float
+    c: float
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """One triangle list that is valid in every drawing.
@@ -184,6 +203,35 @@ class Mesh:
     turns: dict[str, int]
     textures: dict[str, TexturePlacement]
     report: BuildReport
+
+    def point(self, shape_id: str, at: tuple[float, float]) -> MeshPoint:
+        """The place of the mesh that a pixel of a drawing is in.
+
+            foot = session.mesh().point("stand", (103, 240))
+            frame = session.blend(at=(0.0, 0.5), anchor=foot)
+
+        Raises NotFound for an unknown drawing, InvalidArgument for a point outside its mesh.
+        """
+        if shape_id not in self.vertices:
+            raise NotFound(f"the mesh has no drawing '{shape_id}'", reason="SHAPE_NOT_FOUND")
+        place = np.asarray(at, float)
+        corners = self.vertices[shape_id][self.triangles]  # (T, 3, 2)
+        doubled = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        weights = np.stack(
+            [
+                _cross(corners[:, k - 2] - place, corners[:, k - 1] - place) / doubled
+                for k in range(3)
+            ],
+            axis=1,
+        )
+        triangle = int(np.argmax(weights.min(axis=1)))
+        if not weights[triangle].min() >= -1e-9:
+            raise InvalidArgument(
+                f"drawing '{shape_id}' has nothing at {tuple(at)}: the point lies outside its mesh",
+                reason="INVALID_OPTION",
+            )
+        b, c = np.clip(weights[triangle, 1:], 0.0, 1.0).tolist()
+        return MeshPoint(triangle, b, c)
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ from posespace.errors import Error, NotFound
 from posespace.messages import BlendMethod, Edges, Place, ShearLimit, StretchBlend
 from posespace.pictures import decode_png
 from posespace.player import Player
-from posespace.results import AnimationFrame, Frame, Mesh
+from posespace.results import AnimationFrame, Frame, Mesh, MeshPoint
 from posespace.v1 import pose_service_pb2
 
 _BATCH = 256  # queries in one message, the service's limit unless it was told otherwise
@@ -82,6 +82,7 @@ class Session(Authoring):
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
     ) -> Frame:
         """The drawing at a point of pose space, or at explicit weights.
@@ -101,11 +102,16 @@ class Session(Authoring):
                      never invert; "metric", their squares.  The last two take longer.
         repair       Unfold the frame where triangles fold over (`.mended` says how many); takes
                      milliseconds where there is something to mend.
+        anchor       A place of the mesh (`Mesh.point`) by which frames are placed: it lies at the
+                     weighted mean of its places in the drawings, so that a foot that stands in all
+                     of them stands.  By default the centroid of each part of the mesh does.
 
         Raises NotBuilt, InvalidArgument (POSE_NOT_FINITE, WEIGHTS_SUM_NOT_ONE, ...), NotFound for
         weights of an unknown drawing.
         """
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
 
         def ask(revision: str, shape_ids: list[str]) -> Frame:
             request = pose_service_pb2.BlendRequest(
@@ -127,6 +133,7 @@ class Session(Authoring):
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
     ) -> NDArray[np.float32]:
         """The vertices at many points of pose space: (K, 2) -> (K, V, 2) float32.
 
@@ -136,7 +143,7 @@ class Session(Authoring):
         errors as in `blend`; one bad point refuses the whole call, and `fields` names it.
         """
         places = messages.points_array(points, "points")
-        options = messages.blend_options(method, shear_limit, refits, 0.0, stretch, repair)
+        options = messages.blend_options(method, shear_limit, refits, 0.0, stretch, repair, anchor)
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.float32]:
             if len(places) == 0:
@@ -174,6 +181,7 @@ class Session(Authoring):
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
         edges: Edges = "crisp",
     ) -> NDArray[np.uint8]:
@@ -191,7 +199,9 @@ class Session(Authoring):
         Place, options and errors as in `blend`; InvalidArgument also for sizes.
         """
         request = self._render_request(size, view, edges)
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
         channel = self._channel
 
         def ask(revision: str, shape_ids: list[str]) -> NDArray[np.uint8]:
@@ -219,6 +229,7 @@ class Session(Authoring):
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
     ) -> Generator[AnimationFrame, None, None]:
         """Drawings along a smooth path through points of pose space, one by one.
@@ -244,7 +255,9 @@ class Session(Authoring):
         Raises, with the first frame, NotBuilt and InvalidArgument (PATH_INVALID, TOO_MANY_FRAMES,
         ...); other options and errors as in `blend`.
         """
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
         request = messages.make(
             pose_service_pb2.AnimateRequest,
             session_id=self._id,
@@ -268,6 +281,7 @@ class Session(Authoring):
         shear_limit: ShearLimit | None = None,
         stretch: StretchBlend = "linear",
         repair: bool = False,
+        anchor: MeshPoint | None = None,
         sigma: float = 0.0,
         edges: Edges = "crisp",
     ) -> Generator[NDArray[np.uint8], None, None]:
@@ -279,7 +293,9 @@ class Session(Authoring):
         At most 10,000 frames.  Path and streaming as in `animate`, pictures as in `render`.
         """
         request = self._render_request(size, view, edges)
-        options = messages.blend_options(method, shear_limit, refits, sigma, stretch, repair)
+        options = messages.blend_options(
+            method, shear_limit, refits, sigma, stretch, repair, anchor
+        )
         request.animation.CopyFrom(animation(path, fps, easing, loop, duration, options))
         return self._animation_pictures(request)
 

@@ -3,6 +3,7 @@
 #define POSESPACE_OPTIONS_H_
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -111,6 +112,14 @@ enum class StretchBlend {
   kMetric,  // squared lengths in the mean; takes longer
 };
 
+// A place in a mesh, the same in every drawing and frame; Mesh::At makes it.  It belongs to that
+// revision's mesh: a rebuild has other triangles.
+struct MeshPoint {
+  std::int32_t triangle = 0;  // of Mesh::triangles
+  double b = 0.0, c = 0.0;    // weights of its second and third corner; the first has the rest
+  friend bool operator==(const MeshPoint&, const MeshPoint&) = default;
+};
+
 struct BlendOptions {
   BlendMethod method = BlendMethod::kRigid;
   ShearLimit shear_limit = ShearLimit::kByMethod;
@@ -118,6 +127,10 @@ struct BlendOptions {
   double sigma = 0.0;              // sharpness of texture transitions, 0 (linear) to 1 (a step)
   StretchBlend stretch = StretchBlend::kLinear;
   bool repair = false;  // unfold what folds over: milliseconds where there is something to mend
+  // By which frames are placed: it lies at the weighted mean of its places in the drawings, so that
+  // a foot that stands in all of them stands.  By default the centroid of each part of the mesh
+  // does.
+  std::optional<MeshPoint> anchor = {};
   friend bool operator==(const BlendOptions&, const BlendOptions&) = default;
 };
 

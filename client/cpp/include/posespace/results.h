@@ -124,6 +124,10 @@ struct Mesh {
   std::vector<std::vector<std::int32_t>> boundary;  // loops of vertices, outer first
   std::vector<std::int32_t> landmarks;              // the vertex of each correspondence
   BuildReport report;
+
+  // The place of the mesh that a pixel of a drawing is in.  Cost linear in the triangles.
+  // Throws kNotFound for an unknown drawing, kInvalidArgument for a point outside its mesh.
+  MeshPoint At(const std::string& shape_id, Point point) const;
 };
 
 // A drawing at a place of pose space.
