@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -11,9 +12,11 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "interpolation/batch_blend.h"
+#include "interpolation/pose_weights.h"
 #include "tests/bench/eigen_blend.h"
 #include "tests/interpolation/sample_meshes.h"
 
@@ -110,9 +113,29 @@ void Floor(benchmark::State& state, int rows, int num_poses) {
   state.counters["bytes"] = static_cast<double>(count * sizeof(std::uint64_t));
 }
 
+void Weigh(benchmark::State& state, int num_poses) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  const Points placements =
+      Points::NullaryExpr(num_poses, 2, [&](Eigen::Index, Eigen::Index) { return place(random); });
+  const PoseWeights weights = PoseWeights::Fit(placements).value();
+  const Points asked =
+      Points::NullaryExpr(1024, 2, [&](Eigen::Index, Eigen::Index) { return place(random); });
+  std::vector<double> found(static_cast<std::size_t>(num_poses));
+  Eigen::Index k = 0;
+  for (auto _ : state) {
+    weights.At(asked.row(k++ % asked.rows()).transpose(), found);
+    benchmark::DoNotOptimize(found.data());
+  }
+}
+
 constexpr int kUsualRows = 10, kUsualPoses = 6;  // 341 vertices
 
 void Register() {
+  for (const int num_poses : {2, 4, 8, 16}) {
+    benchmark::RegisterBenchmark(("weights/poses:" + std::to_string(num_poses)).c_str(),
+                                 [=](benchmark::State& state) { Weigh(state, num_poses); });
+  }
   using Run = void (Scene::*)(int);
   const std::pair<const char*, Run> runs[] = {{"batch", &Scene::Batch},
                                               {"single", &Scene::Single},
@@ -168,6 +191,31 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// Two threads that blend at once with one pose space, over two that have one each: 1 when sharing
+// costs nothing.
+void PrintSharing(int rounds) {
+  Scene first(kUsualRows, kUsualPoses), second(kUsualRows, kUsualPoses);
+  const auto rate =
+      [&](const BatchBlend& blend) {  // batches a second, the second thread's by `blend`
+        constexpr int kCalls = 50;
+        const auto start = std::chrono::steady_clock::now();
+        const auto work = [](const BatchBlend& with, std::vector<BlendJob>& jobs) {
+          for (int call = 0; call < kCalls; ++call) with.Solve(jobs, {.refits = 0});
+        };
+        std::jthread other([&] { work(*first.blend, first.jobs); });
+        work(blend, second.jobs);
+        other.join();
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        return kCalls / took.count();
+      };
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    const double own = rate(*second.blend);
+    ratios.push_back(rate(*first.blend) / own);
+  }
+  std::printf("ratio blend.shared_vs_own %.2f\n", Median(ratios));
+}
+
 // The median over rounds in which all three take turns, so that a busy machine slows them alike.
 void PrintRatios(int rounds) {
   Scene& scene = SceneOf(kUsualRows, kUsualPoses);
@@ -206,5 +254,6 @@ int main(int argc, char** argv) {
   posespace::Register();
   benchmark::RunSpecifiedBenchmarks();
   posespace::PrintRatios(quick ? 15 : 101);
+  posespace::PrintSharing(quick ? 15 : 101);
   return 0;
 }

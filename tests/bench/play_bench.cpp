@@ -348,7 +348,7 @@ int main(int argc, char** argv) {
   using namespace posespace;
   Effort effort{5, 1.0, true};
   if (argc == 2 && std::strcmp(argv[1], "--quick") == 0) {
-    effort = {5, 0.2, false};
+    effort = {5, 0.18, false};
   } else if (argc == 2 && std::strcmp(argv[1], "--smoke") == 0) {
     effort = {1, 0.1, false};
   } else if (argc > 1) {
