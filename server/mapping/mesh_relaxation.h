@@ -10,6 +10,10 @@
 // Steps that lower the energy of a mesh: the sum of squared Distortion (triangle_quality.h) over
 // all triangles and poses.  Every triangle stays positive (exact).  `sharpest` limits what a step
 // may give up: where it leaves a triangle of larger Sharpness, one as sharp was there before.
+//
+// Areas are evened by splits and collapses (mesh_refinement.h) alone.  Sweeps that even them around
+// each vertex, one to a round of smoothing, left real drawings with smaller angles: the median
+// group's smallest fell from 9.6 to 8.2 degrees.
 
 namespace posespace {
 
