@@ -156,6 +156,8 @@ Field ReadItem(CodedInputStream* input, FrameItems* items) {
         return ReadText(input, &item.message);
       case Bytes(Result::kFrameFieldNumber):
         return ReadFrame(input, items, &item);
+      case Varint(Result::kFadingFieldNumber):
+        return ReadValue<bool, Wire::TYPE_BOOL>(input, &item.fading);
       default:
         return Field::kUnknown;
     }
@@ -186,6 +188,7 @@ FrameItems::Item& FrameItems::Add() {
   item.vertices_begin = item.vertices_end = floats;
   item.weights_begin = item.weights_end = numbers.size();
   item.textures_begin = item.textures_end = numbers.size();
+  item.fading = false;
   item.reason.clear();
   item.message.clear();
   return item;

@@ -23,6 +23,7 @@ struct FrameItems {
     std::size_t vertices_begin, vertices_end;  // in `vertices`
     int weights_begin, weights_end;            // in `numbers`
     int textures_begin, textures_end;          // in `numbers`
+    bool fading;
     std::string reason;
     std::string message;
   };

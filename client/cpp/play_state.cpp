@@ -181,6 +181,7 @@ std::span<const Answer> Player::State::Receive() {
     const FrameItems::Item& item = tick.items.items[k];
     answer.folds = item.folds;
     answer.mended = item.mended;
+    answer.fading = item.fading;
     answer.vertices = part(vertices, item.vertices_begin, item.vertices_end);
     answer.weights = part(numbers, item.weights_begin, item.weights_end);
     answer.texture_weights = part(numbers, item.textures_begin, item.textures_end);

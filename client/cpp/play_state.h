@@ -26,8 +26,8 @@ namespace posespace {
 // What a Player does.  Its calls hold the lock; the keeper looks after the stream in between.
 //
 // The service answers one message after another, so what was sent is a queue whose front is
-// answered next.  A frame is a pure function of what was asked, so what a lost stream has not
-// answered is asked again on the next one.
+// answered next.  A frame is a pure function of what was asked, but while placements fade, so what
+// a lost stream has not answered is asked again on the next one.
 class Player::State {
  public:
   State(std::shared_ptr<internal::Channel> channel, const std::string& session_id,

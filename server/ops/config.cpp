@@ -160,6 +160,10 @@ Config ParseCommandLine(int argc, const char* const* argv, const std::string& ve
   AddOption(app, service, "--drain-grace", grace,
             "milliseconds that open streams may take to end after SIGTERM")
       ->check(CLI::Range(0, 600'000));
+  int fade = static_cast<int>(config.limits.placement_fade.count());
+  AddOption(app, service, "--placement-fade", fade,
+            "milliseconds in which Play's frames come over to new placements; 0: at once")
+      ->check(CLI::Range(0, 10'000));
   int build_timeout = static_cast<int>(config.limits.build_timeout.count());
   int stream_age = static_cast<int>(config.limits.max_stream_age.count());
   AddLimits(app, config.limits, build_timeout, stream_age);
@@ -170,6 +174,7 @@ Config ParseCommandLine(int argc, const char* const* argv, const std::string& ve
     std::exit(app.exit(outcome) == 0 ? 0 : 2);
   }
   config.drain_grace = std::chrono::milliseconds(grace);
+  config.limits.placement_fade = std::chrono::milliseconds(fade);
   config.limits.build_timeout = std::chrono::seconds(build_timeout);
   config.limits.max_stream_age = std::chrono::seconds(stream_age);
   if (const auto checked = CheckConfig(config); !checked) {

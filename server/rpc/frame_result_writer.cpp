@@ -27,6 +27,7 @@ std::size_t SizeOf(std::uint32_t value) {  // nothing for the default
 std::size_t SizeOf(std::int32_t value) {
   return value == 0 ? 0 : kTagBytes + Wire::Int32Size(value);
 }
+std::size_t SizeOf(bool value) { return value ? kTagBytes + Wire::kBoolSize : 0; }
 std::size_t SizeOf(std::uint64_t value) {
   return value == 0 ? 0 : kTagBytes + Wire::UInt64Size(value);
 }
@@ -51,6 +52,9 @@ class Writer {
   }
   void Number(int field, std::uint64_t value) {
     if (value != 0) at_ = Wire::WriteUInt64ToArray(field, value, at_);
+  }
+  void Flag(int field, bool value) {
+    if (value) at_ = Wire::WriteBoolToArray(field, value, at_);
   }
   void Number(int field, float value) { at_ = Wire::WriteFloatToArray(field, value, at_); }
   void Text(int field, const std::string& text) {
@@ -96,7 +100,9 @@ std::size_t SizeOfFrame(const ItemAnswer& item, bool quantized) {
 
 std::size_t SizeOfItem(const ItemAnswer& item, bool quantized) {
   const std::size_t names = SizeOf(item.slot) + SizeOf(item.tag);
-  if (item.reason.empty()) return names + SizeOfBytes(SizeOfFrame(item, quantized));
+  if (item.reason.empty()) {
+    return names + SizeOfBytes(SizeOfFrame(item, quantized)) + SizeOf(item.fading);
+  }
   return names + SizeOfText(item.reason) + SizeOfText(item.error_message);
 }
 
@@ -149,6 +155,7 @@ void WriteItem(const ItemAnswer& item, bool quantized, Writer* writer) {
     writer->Begin(v1::Frame::kQuantizedFieldNumber, SizeOfQuantized(item));
     WriteQuantized(item, writer);
   }
+  writer->Flag(Item::kFadingFieldNumber, item.fading);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct ItemAnswer {
   std::span<const double> texture_weights = {};
   int folds = 0;
   int mended = 0;
+  bool fading = false;
 };
 
 // A PlayResponse with a FrameResult, written once and in place: protobuf would allocate and copy

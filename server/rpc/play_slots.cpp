@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,10 +31,15 @@ void SetRevision(const PoseSpace& pose_space, Answer* answer) {
   for (const auto& drawing : pose_space.drawings()) answer->add_shape_ids(drawing->id);
 }
 
+// Whether the same weights are the same drawing in both.
+bool BlendAlike(const PoseSpace& a, const PoseSpace& b) {
+  return a.mesh_digest() == b.mesh_digest() && a.turns() == b.turns();
+}
+
 }  // namespace
 
-PlaySlots::PlaySlots(const Registry& registry, const Limits& limits)
-    : registry_(registry), limits_(limits) {}
+PlaySlots::PlaySlots(const Registry& registry, const Limits& limits, Now now)
+    : registry_(registry), limits_(limits), now_(std::move(now)) {}
 
 Result<void> PlaySlots::Answer(const v1::PlayRequest& request, const Tags& superseded,
                                const Send& send) {
@@ -74,7 +80,7 @@ Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) {
                      std::to_string(limits_.max_stream_slots),
                  {}};
   }
-  Slot slot;
+  Slot slot{.fade = PlacementFade(limits_.placement_fade)};
   slot.session = std::exchange(next_bound_, nullptr);
   if (slot.session == nullptr || slot.session->id() != bind.session_id()) {
     slot.session = TRY(registry_.Find(bind.session_id()));
@@ -88,20 +94,31 @@ Result<PlaySlots::Slot> PlaySlots::Find(const v1::PlayRequest::Bind& bind) {
 void PlaySlots::FollowRevisions(const Send& send) {
   for (auto entry = slots_.begin(); entry != slots_.end();) {
     auto& [number, slot] = *entry;
+    if (slot.fade.running()) slot.fade.Settle(now_());
     const bool deleted = slot.session->closed();
     auto newest = slot.session->Built();
-    const bool moved = !slot.pinned && newest && *newest != slot.pose_space;
-    if (deleted || moved) {
+    const bool newer = !slot.pinned && newest && *newest != slot.pose_space;
+    if (deleted || (newer && Move(&slot, std::move(*newest)))) {
       v1::PlayResponse response;
       response.mutable_revision_changed()->set_slot(number);
-      if (!deleted) {
-        slot.pose_space = std::move(*newest);
-        SetRevision(*slot.pose_space, response.mutable_revision_changed());
-      }
+      if (!deleted) SetRevision(*slot.pose_space, response.mutable_revision_changed());
       send(MessageBytes(response));
     }
     entry = deleted ? slots_.erase(entry) : std::next(entry);
   }
+}
+
+// False when that has to wait.
+bool PlaySlots::Move(Slot* slot, std::shared_ptr<const PoseSpace> to) {
+  if (!BlendAlike(*slot->pose_space, *to)) {
+    slot->fade.Stop();
+  } else if (slot->fade.full()) {
+    return false;
+  } else {
+    slot->fade.Leave(slot->pose_space->weight_field(), now_());
+  }
+  slot->pose_space = std::move(to);
+  return true;
 }
 
 Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded,
@@ -114,11 +131,19 @@ Result<void> PlaySlots::Tick(const v1::PlayRequest::Tick& tick, const Tags& supe
                  {}};
   }
   items_.clear();
+  std::optional<Clock::time_point> now;  // the same for all items
   for (const v1::PlayRequest::Item& item : tick.items()) {
-    const auto slot = slots_.find(item.slot());
-    items_.push_back({.pose_space = slot == slots_.end() ? nullptr : slot->second.pose_space.get(),
-                      .superseded = std::binary_search(superseded.begin(), superseded.end(),
-                                                       std::pair(item.slot(), item.tag()))});
+    TickItem& answered = items_.emplace_back();
+    answered.superseded = std::binary_search(superseded.begin(), superseded.end(),
+                                             std::pair(item.slot(), item.tag()));
+    const auto found = slots_.find(item.slot());
+    if (found == slots_.end()) continue;
+    Slot& slot = found->second;
+    answered.pose_space = slot.pose_space.get();
+    if (!slot.fade.running() || answered.superseded) continue;
+    if (!now) now = now_();
+    slot.fade.Advance(*now);
+    if (slot.fade.running()) answered.fade = &slot.fade;
   }
   send(AnswerTick(tick, items_));
   return {};

@@ -12,6 +12,7 @@
 #include "geometry/result.h"
 #include "posespace/v1/pose_service.pb.h"
 #include "rpc/message_bytes.h"
+#include "rpc/placement_fade.h"
 #include "rpc/play_tick.h"
 #include "session/registry.h"
 
@@ -22,13 +23,18 @@ namespace posespace {
 // at a time.
 //
 // A slot keeps its pose space until the session has a newer one: results of one message are of one
-// revision, and RevisionChanged comes between two messages.
+// revision, and RevisionChanged comes between two messages.  To a pose space of the same mesh at
+// other placements its frames come over smoothly (placement_fade.h); when these change so fast that
+// too many fields would be mixed, the newest waits for the end of that.
 class PlaySlots {
  public:
+  using Clock = PlacementFade::Clock;
+  using Now = std::function<Clock::time_point()>;
+
   // Takes the answers, in order.
   using Send = std::function<void(MessageBytes)>;
 
-  PlaySlots(const Registry& registry, const Limits& limits);
+  PlaySlots(const Registry& registry, const Limits& limits, Now now = &Clock::now);
 
   // Slot and tag of items, sorted.
   using Tags = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -49,17 +55,20 @@ class PlaySlots {
 
  private:
   struct Slot {
-    std::shared_ptr<Session> session;
-    std::shared_ptr<const PoseSpace> pose_space;
+    std::shared_ptr<Session> session = {};
+    std::shared_ptr<const PoseSpace> pose_space = {};
     bool pinned = false;
+    PlacementFade fade;
   };
 
   Result<Slot> Find(const v1::PlayRequest::Bind& bind);
   void Bind(const v1::PlayRequest::Bind& bind, const Send& send);
+  bool Move(Slot* slot, std::shared_ptr<const PoseSpace> to);
   Result<void> Tick(const v1::PlayRequest::Tick& tick, const Tags& superseded, const Send& send);
 
   const Registry& registry_;
   const Limits limits_;
+  const Now now_;
   std::map<std::uint32_t, Slot> slots_;
   std::vector<TickItem> items_;          // of the tick being answered
   std::shared_ptr<Session> next_bound_;  // the session of the next message, when it is a bind

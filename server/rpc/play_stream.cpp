@@ -8,11 +8,11 @@
 namespace posespace {
 
 PlayStream::PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport,
-                       Clock::time_point old_at)
+                       Clock::time_point old_at, PlaySlots::Now now)
     : transport_(transport),
       max_in_flight_(static_cast<std::size_t>(limits.max_in_flight)),
       old_at_(old_at),
-      slots_(registry, limits) {
+      slots_(registry, limits, std::move(now)) {
   v1::PlayResponse welcome;
   welcome.mutable_welcome()->set_max_slots(static_cast<std::uint32_t>(limits.max_stream_slots));
   welcome.mutable_welcome()->set_max_items(static_cast<std::uint32_t>(limits.max_stream_items));

@@ -53,7 +53,7 @@ class PlayTransport {
 // (play_tick.h): a steady stream allocates nothing for an item.
 class PlayStream {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = PlaySlots::Clock;
 
   static constexpr std::size_t kQueuedBytes = 4 << 20;
   static constexpr std::chrono::seconds kHeartbeat{10};
@@ -61,9 +61,9 @@ class PlayStream {
       30};                                     // in which the client of an old stream moves
   static constexpr double kShortWork = 100.0;  // microseconds that may pass on the reading thread
 
-  // The stream drains by itself at its first beat after `old_at`.
+  // The stream drains by itself at its first beat after `old_at`.  `now` is what its slots ask.
   PlayStream(const Registry& registry, const Limits& limits, PlayTransport& transport,
-             Clock::time_point old_at = Clock::time_point::max());
+             Clock::time_point old_at = Clock::time_point::max(), PlaySlots::Now now = &Clock::now);
 
   // Says Welcome and begins to read.
   void Start();

@@ -21,7 +21,7 @@ struct TickMemory {
   std::vector<int> open;  // items that are still to be blended
   std::vector<int> together;
   std::vector<BlendJob> jobs;
-  std::vector<double> weights, texture_weights;
+  std::vector<double> weights, texture_weights, left_weights;
   std::vector<float> vertices;
   std::vector<float*> outs;  // where the vertices of each item go
 };
@@ -120,6 +120,12 @@ class TickAnswerer {
     const std::span<double> weights(memory_.weights.data() + used_weights_, count);
     TRY(pose_space.Weigh(query, weights));
     ItemAnswer& answer = memory_.answers[k];
+    const Point* const at = std::get_if<Point>(&query.position);
+    answer.fading = items_[k].fade != nullptr && at != nullptr;
+    if (answer.fading) {
+      GrowTo(count, &memory_.left_weights);
+      items_[k].fade->Mix(*at, weights, std::span(memory_.left_weights).first(count));
+    }
     answer.weights = weights;
     memory_.outs[k] = memory_.vertices.data() + used_floats_;
     answer.vertices = {memory_.outs[k], FloatsOf(pose_space)};

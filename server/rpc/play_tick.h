@@ -6,6 +6,7 @@
 
 #include "posespace/v1/pose_service.pb.h"
 #include "rpc/message_bytes.h"
+#include "rpc/placement_fade.h"
 #include "session/pose_space.h"
 
 namespace posespace {
@@ -13,6 +14,7 @@ namespace posespace {
 // What an item of a tick asks.
 struct TickItem {
   const PoseSpace* pose_space = nullptr;  // null: its slot has no session
+  const PlacementFade* fade = nullptr;    // null: none runs
   bool superseded = false;
 };
 

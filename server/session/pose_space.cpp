@@ -456,6 +456,7 @@ const std::vector<std::shared_ptr<const Drawing>>& PoseSpace::drawings() const {
   return state_->body->drawings;
 }
 const std::vector<int>& PoseSpace::turns() const { return state_->turns; }
+const PoseWeights& PoseSpace::weight_field() const { return state_->weights; }
 const MappingReport& PoseSpace::report() const { return state_->report; }
 const std::vector<std::string>& PoseSpace::warnings() const { return state_->body->warnings; }
 

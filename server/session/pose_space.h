@@ -164,6 +164,7 @@ class PoseSpace {
   const CompatibleMesh& mesh() const;
   const std::vector<std::shared_ptr<const Drawing>>& drawings() const;
   const std::vector<int>& turns() const;
+  const PoseWeights& weight_field() const;
   const MappingReport& report() const;
   const std::vector<std::string>& warnings() const;  // what a person should know of the build
   BuildSummary Summary() const;

@@ -172,8 +172,62 @@ def test_frames_follow_new_placements_and_say_so(client):
         ).revision
         (after,) = player.frames([(0.5, 0.5)])
         assert before.revision != after.revision == revision == player.avatar.revision
+        while after.fading:
+            (after,) = player.frames([(0.5, 0.5)])
         assert after.weights["step"] == pytest.approx(1)
     session.delete()
+
+
+def shares(before, after, frames):
+    """How far each frame's weights have come from those of `before` to those of `after`."""
+    old, new = (np.array(list(frame.weights.values())) for frame in (before, after))
+    for frame in frames:
+        weights = np.array(list(frame.weights.values()))
+        share = (weights - old) @ (new - old) / ((new - old) @ (new - old))
+        assert np.allclose(weights, old + share * (new - old), atol=1e-9)
+        yield share
+
+
+def test_an_avatar_glides_from_old_placements_to_new_ones_and_arrives_exactly(client):
+    session = make_walk(client)
+    with session.play() as player:
+        (before,) = player.frames([(0.5, 0.5)])
+        session.set_placements({"stand": (0, 0), "step": (0.5, 0.5), "wave": (0, 1)})
+        exact = session.blend(at=(0.5, 0.5))
+        frames = list(player.frames([(0.5, 0.5)]))
+        while frames[-1].fading:
+            frames += player.frames([(0.5, 0.5)])
+        # At explicit weights nothing changes.
+        (chosen,) = player.tick([player.avatar.item(weights={"wave": 1.0})])
+    assert not before.fading and not exact.fading and not chosen.fading
+    assert all(frame.fading for frame in frames[:-1])
+    assert np.array_equal(frames[0].vertices, before.vertices)
+    assert frames[0].weights == before.weights
+    assert np.array_equal(frames[-1].vertices, exact.vertices)
+    assert frames[-1].weights == exact.weights
+    assert frames[-1].texture_weights == exact.texture_weights
+    way = list(shares(before, exact, frames))
+    assert way == sorted(way)
+    session.delete()
+
+
+def test_an_avatar_is_between_old_placements_and_new_ones_for_as_long_as_the_service_is_told():
+    with (
+        posespace.serve_locally(flags=["--placement-fade", "10000"]) as server,
+        posespace.connect(server.address) as client,
+    ):
+        session = make_walk(client)
+        with session.play() as player:
+            (before,) = player.frames([(0.5, 0.5)])
+            session.set_placements({"stand": (0, 0), "step": (0.5, 0.5), "wave": (0, 1)})
+            (first,) = player.frames([(0.5, 0.5)])
+            time.sleep(0.3)
+            (later,) = player.frames([(0.5, 0.5)])
+            assert first.fading and later.fading
+            start, share = shares(before, session.blend(at=(0.5, 0.5)), [first, later])
+            assert start == 0.0 < share < 1.0
+            moved = np.abs(later.vertices - before.vertices).max()
+            assert moved > 0.0
 
 
 def test_weights_meant_for_other_drawings_are_not_taken_for_these(client):

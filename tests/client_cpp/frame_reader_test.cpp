@@ -34,6 +34,7 @@ v1::PlayResponse RandomResult(std::mt19937& random) {
       item.set_error_message(std::string(static_cast<std::size_t>(upTo(40)), 'x'));
       continue;
     }
+    item.set_fading(random() % 2 == 0);
     auto& frame = *item.mutable_frame();
     std::string& vertices = *frame.mutable_vertices();
     for (int k = 8 * upTo(50); k > 0; --k) vertices += static_cast<char>(random() % 60);
@@ -54,6 +55,7 @@ void ExpectSame(const v1::PlayResponse::FrameResult& result, const FrameItems& i
     EXPECT_EQ(item.tag, expected.tag());
     EXPECT_EQ(item.folds, expected.frame().folds());
     EXPECT_EQ(item.mended, expected.frame().mended());
+    EXPECT_EQ(item.fading, expected.fading());
     EXPECT_EQ(item.reason, expected.reason());
     EXPECT_EQ(item.message, expected.error_message());
     const std::string vertices(

@@ -244,6 +244,24 @@ TEST_F(PlayerTest, FollowsARebuildAndSaysSo) {
   EXPECT_EQ(player.Bound(0).revision, after);
 }
 
+TEST_F(PlayerTest, ComesOverToNewPlacementsAndSaysHowLong) {
+  Session session = MakeStars(client_);
+  Player player = session.Play();
+  const Frame before = session.Blend({0.5, 0.0});
+  session.SetPlacements({{"up", {0, 0}}, {"left", {0.5, 0}}, {"right", {0, 1}}});
+  const Frame after = session.Blend({0.5, 0.0});
+  player.Ask(0, 0, {0.5, 0.0});
+  auto answers = player.Tick();
+  EXPECT_TRUE(answers[0].fading);
+  EXPECT_EQ(Distance(answers[0].vertices, before.vertices), 0.0);
+  while (answers[0].fading) {
+    player.Ask(0, 0, {0.5, 0.0});
+    answers = player.Tick();
+  }
+  EXPECT_EQ(Distance(answers[0].vertices, after.vertices), 0.0);
+  EXPECT_GT(Distance(before.vertices, after.vertices), 1.0);
+}
+
 TEST_F(PlayerTest, StaysWithAPinnedRevision) {
   Session session = MakeStars(client_);
   const std::string revision = session.State().revision;

@@ -46,6 +46,7 @@ TEST(WriteFrameResult, WritesWhatProtobufWould) {
   const std::vector<double> weights = {0.25, 0.75}, textures = {0.0, 1.0};
   std::vector<ItemAnswer> items(4);
   items[0] = {.slot = 63, .tag = 4'000'000'000u, .vertices = vertices, .folds = 3, .mended = 130};
+  items[0].fading = true;
   items[1] = {.vertices = vertices, .weights = weights, .texture_weights = textures};
   items[2] = {.slot = 1, .reason = "SLOT_NOT_BOUND", .error_message = std::string(300, 'x')};
   items[3] = {.tag = 128};  // no vertices at all
@@ -61,6 +62,7 @@ TEST(WriteFrameResult, WritesWhatProtobufWould) {
     answer.set_reason(item.reason);
     answer.set_error_message(item.error_message);
     if (!item.reason.empty()) continue;
+    answer.set_fading(item.fading);
     auto& frame = *answer.mutable_frame();
     frame.set_vertices(item.vertices.data(), item.vertices.size_bytes());
     frame.mutable_weights()->Assign(item.weights.begin(), item.weights.end());

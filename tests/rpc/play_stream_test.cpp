@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -16,6 +17,7 @@
 
 #include "tests/interpolation/counted_allocations.h"
 #include "tests/rpc/built_session.h"
+#include "tests/session/sample_drawings.h"
 #include "tests/support/flaky_store.h"
 
 namespace posespace {
@@ -81,7 +83,9 @@ BuiltSession& SharedSession() {
 class Play : public ::testing::Test {
  protected:
   explicit Play(BuiltSession& sessions = SharedSession(), const Limits& limits = {})
-      : sessions_(sessions), stream_(sessions_.registry(), limits, wire_) {
+      : sessions_(sessions),
+        stream_(sessions_.registry(), limits, wire_, Clock::time_point::max(),
+                [this] { return now_; }) {
     stream_.Start();
   }
 
@@ -155,7 +159,34 @@ class Play : public ::testing::Test {
   std::string Revision() { return (*sessions_.session().Built())->revision(); }
   int Vertices() { return (*sessions_.session().Built())->mesh().num_vertices(); }
 
+  // Plays messages of one, some and many items until memory is what they need, and counts then.
+  void ExpectNoAllocationForAnItem() {
+    wire_.parse = false;
+    for (const std::size_t count : {1, 16, 64}) {
+      const v1::PlayRequest tick = Tick(1, std::vector<std::uint32_t>(count, 0), 0.3);
+      const std::string bytes = tick.SerializeAsString();
+      const auto play = [&] {
+        ASSERT_NE(wire_.reading, nullptr);
+        ASSERT_TRUE(std::exchange(wire_.reading, nullptr)->ParseFromString(bytes));
+        stream_.OnRead(true);
+        if (std::exchange(wire_.work, false)) stream_.Work();
+        ASSERT_GT(wire_.bytes.size(), count * 8 * Vertices());
+        wire_.bytes = {};
+        wire_.writing = nullptr;
+        stream_.OnWritten(true);
+      };
+      for (int k = 0; k < 10; ++k) play();
+      const int before = CountedAllocations();
+      constexpr int kMessages = 100;
+      for (int k = 0; k < kMessages; ++k) play();
+      // What protobuf reads a message into, however many items it has.
+      EXPECT_LE(CountedAllocations() - before, 4 * kMessages) << count << " items";
+    }
+    wire_.parse = true;
+  }
+
   BuiltSession& sessions_;
+  Clock::time_point now_ = Clock::now();
   Wire wire_;
   PlayStream stream_;
 };
@@ -287,27 +318,7 @@ TEST_F(Play, AnswersItemsOfManyKindsAsEachAlone) {
 
 TEST_F(Play, AllocatesNothingForAnItemOfASteadyStream) {
   BindSlot0();
-  for (const std::size_t count : {1, 16, 64}) {
-    const v1::PlayRequest tick = Tick(1, std::vector<std::uint32_t>(count, 0), 0.3);
-    const std::string bytes = tick.SerializeAsString();
-    const auto play = [&] {
-      ASSERT_NE(wire_.reading, nullptr);
-      ASSERT_TRUE(std::exchange(wire_.reading, nullptr)->ParseFromString(bytes));
-      stream_.OnRead(true);
-      if (std::exchange(wire_.work, false)) stream_.Work();
-      ASSERT_GT(wire_.bytes.size(), count * 8 * Vertices());
-      wire_.bytes = {};
-      wire_.writing = nullptr;
-      stream_.OnWritten(true);
-    };
-    wire_.parse = false;
-    for (int k = 0; k < 10; ++k) play();
-    const int before = CountedAllocations();
-    constexpr int kMessages = 100;
-    for (int k = 0; k < kMessages; ++k) play();
-    // What protobuf reads a message into, however many items it has.
-    EXPECT_LE(CountedAllocations() - before, 4 * kMessages) << count << " items";
-  }
+  ExpectNoAllocationForAnItem();
 }
 
 // Once each message made the memory for the next one larger, until there was none.
@@ -453,6 +464,260 @@ TEST_F(PlayOfAChangingSession, KeepsAPinnedRevision) {
   const auto messages = TakeAll();
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0].frame_result().items(0).reason(), "");
+}
+
+// A session whose drawings are placed anew under its stream.
+class PlayOverNewPlacements : public PlayOfAChangingSession {
+ protected:
+  static constexpr auto kFade = Limits{}.placement_fade;
+
+  void Place(double tall_y) {
+    ASSERT_TRUE(
+        sessions_.session().SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(0, tall_y)}}, ""));
+  }
+  // The answer to one item at a point, after other messages if there are any.
+  v1::PlayResponse::ItemResult Ask(double y = 0.5) {
+    auto tick = Tick(++frames_, {0}, y);
+    tick.mutable_tick()->set_with_weights(true);
+    Say(tick);
+    messages_ = TakeAll();
+    return messages_.back().frame_result().items(0);
+  }
+  // What it would be at rest.
+  Frame Exact(double y = 0.5) {
+    return (*sessions_.session().Built())->Blend({Point(0, y), {}, 0.0}).value();
+  }
+  static std::vector<float> VerticesOf(const v1::PlayResponse::ItemResult& item) {
+    std::vector<float> vertices(item.frame().vertices().size() / sizeof(float));
+    std::memcpy(vertices.data(), item.frame().vertices().data(), item.frame().vertices().size());
+    return vertices;
+  }
+  static std::vector<float> VerticesOf(const Frame& frame) {
+    return {frame.vertices.data(), frame.vertices.data() + frame.vertices.size()};
+  }
+  static double Distance(const std::vector<float>& a, const std::vector<float>& b) {
+    double distance = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+      distance = std::fmax(distance, std::abs(a[k] - b[k]));
+    return distance;
+  }
+
+  std::uint64_t frames_ = 0;
+  std::vector<v1::PlayResponse> messages_;
+};
+
+TEST_F(PlayOverNewPlacements, BeginsWithTheOldFrameAndEndsExactlyWithTheNewOne) {
+  BindSlot0();
+  const auto before = Ask();
+  EXPECT_FALSE(before.fading());
+  Place(1.7);
+  const auto first = Ask();
+  ASSERT_EQ(messages_.size(), 2u);
+  EXPECT_EQ(messages_[0].revision_changed().revision(), Revision());
+  EXPECT_TRUE(first.fading());
+  EXPECT_EQ(first.frame().SerializeAsString(), before.frame().SerializeAsString());
+
+  const double way = Distance(VerticesOf(before), VerticesOf(Exact()));
+  ASSERT_GT(way, 5.0) << "pixels";
+  std::vector<float> last = VerticesOf(first);
+  for (auto passed = 5ms; passed < kFade; passed += 5ms) {
+    now_ += 5ms;
+    const auto item = Ask();
+    EXPECT_TRUE(item.fading());
+    EXPECT_NEAR(item.frame().weights(0) + item.frame().weights(1), 1.0, 1e-9);
+    EXPECT_NEAR(item.frame().texture_weights(0) + item.frame().texture_weights(1), 1.0, 1e-9);
+    const auto vertices = VerticesOf(item);
+    EXPECT_LT(Distance(vertices, last), 0.1 * way);
+    last = vertices;
+  }
+  now_ += 5ms;
+  const auto arrived = Ask();
+  EXPECT_FALSE(arrived.fading());
+  const Frame exact = Exact();
+  EXPECT_EQ(VerticesOf(arrived), VerticesOf(exact));
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(arrived.frame().weights(i), exact.weights[i]);
+    EXPECT_EQ(arrived.frame().texture_weights(i), exact.texture_weights[i]);
+  }
+}
+
+TEST_F(PlayOverNewPlacements, BeginsWithTheOldFrameForAnAvatarThatRests) {
+  BindSlot0();
+  const auto before = Ask();
+  Place(1.7);
+  stream_.Beat(Clock::now());
+  EXPECT_EQ(TakeAll().back().revision_changed().revision(), Revision());
+  now_ += 1s;
+  stream_.Beat(Clock::now());
+  const auto first = Ask();
+  EXPECT_TRUE(first.fading());
+  EXPECT_EQ(first.frame().SerializeAsString(), before.frame().SerializeAsString());
+  now_ += kFade;
+  EXPECT_FALSE(Ask().fading());
+}
+
+TEST_F(PlayOverNewPlacements, IsThereWhenNobodyAskedForLong) {
+  BindSlot0();
+  Place(1.7);
+  stream_.Beat(Clock::now());
+  TakeAll();
+  now_ += PlacementFade::kPatience;
+  const auto item = Ask();
+  EXPECT_FALSE(item.fading());
+  EXPECT_EQ(VerticesOf(item), VerticesOf(Exact()));
+}
+
+TEST_F(PlayOverNewPlacements, GoesOnFromWhereItIsWhenTheyChangeAgain) {
+  BindSlot0();
+  Place(1.7);
+  Ask();
+  now_ += 60ms;
+  const auto seen = VerticesOf(Ask());
+  Place(0.6);
+  now_ += 1ms;
+  const auto again = Ask();
+  EXPECT_EQ(messages_[0].revision_changed().revision(), Revision());
+  EXPECT_TRUE(again.fading());
+  EXPECT_LT(Distance(VerticesOf(again), seen), 1e-3);
+  EXPECT_GT(Distance(seen, VerticesOf(Exact())), 1.0);
+  now_ += kFade;
+  EXPECT_EQ(VerticesOf(Ask()), VerticesOf(Exact()));
+}
+
+TEST_F(PlayOverNewPlacements, WaitsWithChangesThatComeTooFastToMixAndArrivesAtTheLast) {
+  BindSlot0();
+  std::vector<float> last = VerticesOf(Ask());
+  constexpr int kChanges = 2 * PlacementFade::kMostLeft;
+  int said = 0;
+  for (int k = 0; k < kChanges; ++k) {
+    Place(k % 2 == 0 ? 1.7 : 0.6);
+    for (int step = 0; step < 2; ++step) {
+      now_ += 5ms;
+      const auto vertices = VerticesOf(Ask());
+      said += static_cast<int>(messages_.size()) - 1;
+      EXPECT_LT(Distance(vertices, last), 3.0) << k;
+      last = vertices;
+    }
+  }
+  EXPECT_EQ(said, PlacementFade::kMostLeft);
+  for (int k = 0; k < 100; ++k) {
+    now_ += 5ms;
+    const auto vertices = VerticesOf(Ask());
+    EXPECT_LT(Distance(vertices, last), 3.0);
+    last = vertices;
+  }
+  EXPECT_EQ(last, VerticesOf(Exact()));
+}
+
+TEST_F(PlayOverNewPlacements, LeavesItemsByWeightsAsTheyAre) {
+  BindSlot0();
+  Place(1.7);
+  auto tick = Tick(1, {0, 0});
+  v1::Weights& weights = *tick.mutable_tick()->mutable_items(1)->mutable_query()->mutable_weights();
+  weights.add_values(0.3);
+  weights.add_values(0.7);
+  Say(tick);
+  const auto result = TakeAll().back().frame_result();
+  EXPECT_TRUE(result.items(0).fading());
+  EXPECT_FALSE(result.items(1).fading());
+  const Eigen::VectorXd asked = Eigen::Vector2d(0.3, 0.7);
+  EXPECT_EQ(VerticesOf(result.items(1)),
+            VerticesOf((*sessions_.session().Built())->Blend({asked, {}, 0.0}).value()));
+}
+
+TEST_F(PlayOverNewPlacements, IsAtOnceWhenDrawingsAreBuiltAnewAlsoMeanwhile) {
+  BindSlot0();
+  Place(1.7);
+  Ask();
+  now_ += 60ms;
+  EXPECT_TRUE(Ask().fading());
+  sessions_.Put("tall", EllipseOf(30, 90));
+  sessions_.Build();
+  const auto item = Ask();
+  EXPECT_EQ(messages_[0].revision_changed().revision(), Revision());
+  EXPECT_FALSE(item.fading());
+  EXPECT_EQ(VerticesOf(item), VerticesOf(Exact()));
+}
+
+TEST_F(PlayOverNewPlacements, IsOfTheSlotAlone) {
+  BindSlot0();
+  Say(Bind(1, "cell", Revision()));
+  TakeAll();
+  Place(1.7);
+  Say(Tick(1, {0, 1, 0}));
+  const auto result = TakeAll().back().frame_result();
+  EXPECT_TRUE(result.items(0).fading());
+  EXPECT_FALSE(result.items(1).fading()) << "pinned";
+  EXPECT_TRUE(result.items(2).fading());
+  EXPECT_EQ(result.items(0).frame().vertices(), result.items(1).frame().vertices());
+  Say(Bind(0));
+  Say(Tick(2, {0}));
+  EXPECT_FALSE(TakeAll().back().frame_result().items(0).fading()) << "bound anew";
+}
+
+TEST_F(PlayOverNewPlacements, AllocatesNothingForAnItemMeanwhile) {
+  BindSlot0();
+  Place(1.7);
+  EXPECT_TRUE(Ask().fading());
+  now_ += 60ms;  // and stays there
+  ExpectNoAllocationForAnItem();
+  EXPECT_TRUE(Ask().fading());
+}
+
+// Four drawings in a row, each turned on by 1.9 against the one before, have other turns in another
+// order: the same weights are not the same drawing then.
+TEST_F(PlayOverNewPlacements, IsAtOnceWhenDrawingsTurnAnotherWay) {
+  const auto session = *sessions_.registry().Create({"wheel", "", {}, "wheel"});
+  std::vector<Correspondence> marks(3);
+  const auto place = [&](const std::vector<double>& xs) {
+    Placements placements;
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      placements["turn" + std::to_string(i)] = Point(xs[i], 0);
+    }
+    ASSERT_TRUE(session->SetPlacements(placements, ""));
+  };
+  for (int i = 0; i < 4; ++i) {
+    const std::string id = "turn" + std::to_string(i);
+    const Points ring = TurnedCreatureRing(1.9 * i);
+    ASSERT_TRUE(session->PutShape(id, PolygonSource{ring, {}, {}}, /*replace=*/false));
+    for (int k = 0; k < 3; ++k) marks[k][id] = ring.row(20 * k);
+  }
+  ASSERT_TRUE(session->SetCorrespondences(marks, ""));
+  place({0, 1, 2, 3});
+  ASSERT_TRUE(session->StartBuild({.target_edge_length = 0.25}, sessions_.registry().build_pool()));
+  while (!session->LatestBuild()->Status().ended()) std::this_thread::sleep_for(1ms);
+  const auto before = *session->Built();
+  Say(Bind(0, "wheel"));
+  ASSERT_EQ(TakeAll().back().bound().reason(), "");
+
+  place({0, 1.1, 2, 3});
+  ASSERT_EQ((*session->Built())->turns(), before->turns());
+  EXPECT_TRUE(Ask(0.0).fading());
+  place({0, 3, 1, 2});
+  ASSERT_NE((*session->Built())->turns(), before->turns());
+  EXPECT_FALSE(Ask(0.0).fading());
+}
+
+class PlayWithoutFades : private OwnSession, public Play {
+ protected:
+  static Limits AtOnce() {
+    Limits limits;
+    limits.placement_fade = 0ms;
+    return limits;
+  }
+  PlayWithoutFades() : Play(own, AtOnce()) {}
+};
+
+TEST_F(PlayWithoutFades, IsAtNewPlacementsAtOnce) {
+  BindSlot0();
+  ASSERT_TRUE(
+      sessions_.session().SetPlacements({{"wide", Point(0, 0)}, {"tall", Point(0, 2)}}, ""));
+  auto tick = Tick(1, {0}, 2.0);
+  tick.mutable_tick()->set_with_weights(true);
+  Say(tick);
+  const auto item = TakeAll().back().frame_result().items(0);
+  EXPECT_FALSE(item.fading());
+  EXPECT_NEAR(item.frame().weights(1), 1.0, 1e-9);
 }
 
 TEST_F(PlayOfAChangingSession, FreesTheSlotOfADeletedSession) {

@@ -90,6 +90,7 @@ TEST(Program, RefusesWhatItCannotDoInWords) {
       {{"--store", "sqlite:"}, "sqlite:PATH"},
       {{"--listen", "unix:/tmp/x", "--port-file", "y"}, "--port-file"},
       {{"--max-sessions", "0"}, "--max-sessions"},
+      {{"--placement-fade", "-1"}, "--placement-fade"},
       {{"--log-level", "loud"}, "--log-level"},
       {{"--no-such-flag"}, "--no-such-flag"}};
   for (const auto& [arguments, text] : cases) {

@@ -350,7 +350,11 @@ def _vertices(message: pose_service_pb2.Frame) -> NDArray[np.float32]:
 
 
 def frame(
-    message: pose_service_pb2.Frame, shape_ids: Sequence[str], revision: str
+    message: pose_service_pb2.Frame,
+    shape_ids: Sequence[str],
+    revision: str,
+    *,
+    fading: bool = False,
 ) -> results.Frame:
     """A drawing at a place of pose space."""
     return results.Frame(
@@ -360,6 +364,7 @@ def frame(
         folds=message.folds,
         mended=message.mended,
         revision=revision,
+        fading=fading,
     )
 
 

@@ -107,7 +107,7 @@ class Item:
             )
         if result.reason:
             return error_of_reason(result.reason, result.error_message)
-        return messages.frame(result.frame, avatar.shape_ids, avatar.revision)
+        return messages.frame(result.frame, avatar.shape_ids, avatar.revision, fading=result.fading)
 
 
 class Player:
@@ -120,6 +120,11 @@ class Player:
             crowd = [player.avatar, player.bind(other_session)]      # many avatars, one message
             for frame in player.tick([avatar.item(at=(0, 0.5)) for avatar in crowd]):
                 ...
+
+    New placements of a session, with the same mesh, do not make its avatars jump: frames at points
+    come over to them within 150 ms (unless the service was told otherwise) of the first one that is
+    asked for, and have `fading` set meanwhile.  Who asks only for avatars that have moved, asks
+    again for those, too.
 
     When the service wants the stream to end (it ends itself, or the stream is old), what is under
     way is still answered, and the player goes on over a new stream if it gets one.

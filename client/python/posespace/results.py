@@ -244,6 +244,7 @@ class Frame:
     folds            Triangles that are not positive; 0 in a good frame.
     mended           Triangles that repair made positive; 0 when nothing had to be mended.
     revision         The pose space it is of.
+    fading           Of a Player, while it comes over to new placements: ask again, it moves on.
     """
 
     vertices: NDArray[np.float32] = field(repr=False)
@@ -252,6 +253,7 @@ class Frame:
     folds: int
     mended: int
     revision: str
+    fading: bool
 
 
 @dataclass(frozen=True, eq=False)

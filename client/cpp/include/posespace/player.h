@@ -37,6 +37,7 @@ struct Answer {
   std::span<const double> texture_weights;
   int folds = 0;                          // triangles that are not positive; 0 in a good frame
   int mended = 0;                         // triangles that repair made positive
+  bool fading = false;                    // placements have changed: ask again, it moves on
   const BoundSession* session = nullptr;  // what it is of; null when the slot has none
   const Error* error = nullptr;           // why there is no frame
 };
@@ -55,6 +56,11 @@ struct Answer {
 //
 // Tick is Send and Receive.  To compute while the service does, Send tick k + 1 before receiving
 // tick k.
+//
+// New placements of a session, with the same mesh, do not make its avatars jump: answers at points
+// come over to them within 150 ms (unless the service was told otherwise) of the first one that is
+// asked for, and say `fading` meanwhile.  Who asks only for avatars that have moved, asks again for
+// those, too.
 //
 // One avatar's mistake stays in its answer.  When the connection breaks or the service drains, the
 // next call that waits opens the stream again (through a load balancer: elsewhere), binds its
