@@ -46,17 +46,21 @@ struct Alignment {
 // Moves the inner vertices of a mesh so that the insides of the drawings correspond: eyes meet
 // eyes.
 //
-// All drawings are warped to `common` (V x 2, such as the blend with equal weights); image flow
-// from the one that differs least from the others says where each one's features lie there.  A
+// All drawings are warped to `common` (V x 2, such as the blend with equal weights); there,
+// drawings that show the same are kin (kin.h), as fronts of a figure are, or backs of it, and each
+// group of kin is aligned by itself: a face and the back of a head have nothing to bring together.
+// Image flow from the one that differs least from its kin says where each one's features lie.  A
 // field that follows the flow at features, as far as pictures agree about them, and is smooth
-// elsewhere carries the vertices; all drawings share the way evenly, so that none is bent alone.
-// Edges of the painting do not count as features.  A drawing keeps its old vertices where moving
-// them does not lower the ghost loss; all do when that falls by less than a twentieth.
+// elsewhere carries the vertices; kin share the way evenly, so that none is bent alone.  A vertex
+// keeps its move as far as the colours around it have come closer to those of the kin; a drawing,
+// where that lowers the ghost loss of the group; a group, where that falls by a twentieth.  Edges
+// of the painting do not count as features.
 //
 // Boundary vertices and landmarks stay.  Every triangle stays positive in every drawing (exact);
-// the star of no vertex has a smaller angle than min(before, 8 degrees).  Fewer than two drawings,
-// and plain ones, come back as they are.  Equal input gives equal output; the order of the drawings
-// changes nothing but rounding.
+// the star of no vertex has a smaller angle than min(before, 8 degrees); none is stretched or
+// squeezed to more than InteriorMoves::kMostStretch times its size, in any direction.  Fewer than
+// two drawings, plain ones, and those without kin come back as they are.  Equal input gives equal
+// output; the order of the drawings changes nothing but rounding.
 //
 // Requires  a valid mesh; textures reduced to AlignmentSize(N).
 // Fails     kSizeMismatch (textures, common), kCancelled.

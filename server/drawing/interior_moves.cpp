@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawing/interior_moves.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -17,6 +19,23 @@ double AngleOf(const Triangles& triangles, const Points& pose, int t) {
                   Point(pose.row(triangles(t, 2))));
 }
 
+// Two sides of a triangle, in columns.
+Eigen::Matrix2d SidesOf(const Triangles& triangles, const Points& pose, int t) {
+  const Point a = pose.row(triangles(t, 0)).transpose();
+  Eigen::Matrix2d sides;
+  sides << pose.row(triangles(t, 1)).transpose() - a, pose.row(triangles(t, 2)).transpose() - a;
+  return sides;
+}
+
+// Both singular values of a map that does not mirror lie within kMostStretch of one.
+bool IsGentle(const Eigen::Matrix2d& map) {
+  const double squares = map.squaredNorm(), area = map.determinant();
+  const double sum = std::sqrt(squares + 2.0 * area);
+  const double difference = std::sqrt(std::max(squares - 2.0 * area, 0.0));
+  return sum + difference <= 2.0 * InteriorMoves::kMostStretch &&
+         sum - difference >= 2.0 / InteriorMoves::kMostStretch;
+}
+
 }  // namespace
 
 InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
@@ -24,7 +43,8 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
       pose_(pose),
       free_(mesh.num_vertices(), 1),
       around_(mesh.num_vertices()),
-      least_(mesh.num_triangles(), 0.0) {
+      least_(mesh.num_triangles(), 0.0),
+      inverse_(mesh.num_triangles()) {
   for (const std::vector<int>& loop : mesh.boundary) {
     for (const int v : loop) free_[v] = 0;
   }
@@ -42,6 +62,7 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
   }
   for (int t = 0; t < mesh.num_triangles(); ++t) {
     for (int k = 0; k < 3; ++k) least_[t] = std::max(least_[t], star[mesh.triangles(t, k)]);
+    inverse_[t] = SidesOf(mesh.triangles, pose, t).inverse();
   }
 }
 
@@ -59,7 +80,8 @@ bool InteriorMoves::IsAllowed(int vertex) const {
     return Orientation(pose_.row(triangles(t, 0)).transpose(),
                        pose_.row(triangles(t, 1)).transpose(),
                        pose_.row(triangles(t, 2)).transpose()) > 0 &&
-           AngleOf(triangles, pose_, t) >= least_[t];
+           AngleOf(triangles, pose_, t) >= least_[t] &&
+           IsGentle(SidesOf(triangles, pose_, t) * inverse_[t]);
   });
 }
 

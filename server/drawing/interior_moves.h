@@ -9,10 +9,14 @@
 namespace posespace {
 
 // Moves vertices of one pose of a mesh and keeps it valid: every triangle stays positive (exact),
-// and the star of no vertex gets a smaller angle than min(what it was given with, 8 degrees).
+// the star of no vertex gets a smaller angle than min(what it was given with, 8 degrees), and no
+// triangle is stretched or squeezed, in any direction, to more than kMostStretch times its size or
+// less than one part in so many: what is drawn in it would no longer look like itself.
 // One owner; not shared.
 class InteriorMoves {
  public:
+  static constexpr double kMostStretch = 2.5;
+
   // Requires  every triangle is positive in `pose`.
   InteriorMoves(const CompatibleMesh& mesh, const Points& pose);
 
@@ -32,6 +36,7 @@ class InteriorMoves {
   std::vector<char> free_;
   std::vector<std::vector<int>> around_;  // triangles at each vertex
   std::vector<double> least_;             // angle of each triangle, radians
+  std::vector<Eigen::Matrix2d> inverse_;  // of two sides of each triangle as given, in columns
 };
 
 }  // namespace posespace

@@ -7,7 +7,7 @@ namespace {
 
 // Names the algorithms from drawings to mesh, and from mesh to weights: a change of results needs a
 // new number, so that nothing built by older code is taken for the same.
-constexpr std::string_view kMeshVersion = "posespace-mesh/5";
+constexpr std::string_view kMeshVersion = "posespace-mesh/6";
 constexpr std::string_view kRevisionVersion = "posespace-revision/1";
 
 void AddOptions(const MappingOptions& options, Digest& digest) {

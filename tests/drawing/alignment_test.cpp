@@ -60,6 +60,14 @@ Image Face(double eye_x, double eye_y) {
   return image;
 }
 
+// The back of a head: hair, with an ornament, down to a neck.
+Image BackOfHead(double ornament_x) {
+  Image image = PictureOf(kSide, kSide, kInk);
+  PaintBox(&image, 0, 120, kSide, 40, kSkin);
+  PaintDisc(&image, ornament_x, 60, 14.0, kRed);
+  return image;
+}
+
 std::vector<ReducedTexture> Reduced(const std::vector<Image>& images) {
   std::vector<ReducedTexture> textures;
   for (const Image& image : images) {
@@ -192,6 +200,38 @@ TEST(AlignInteriors, NeverRaisesTheGhostLoss) {
     const auto aligned = Align(SquareMesh(4), Scribbles(4, seed));
     ASSERT_THAT(aligned, Succeeds());
     EXPECT_LE(aligned->all.after, aligned->all.before);
+  }
+}
+
+TEST(AlignInteriors, KeepsAFaceFromTheBackOfAHead) {
+  const CompatibleMesh mesh = SquareMesh(2);
+  const auto aligned = Align(mesh, {Face(72, 66), BackOfHead(88)});
+  ASSERT_THAT(aligned, Succeeds());
+  EXPECT_EQ(aligned->poses, mesh.poses);
+  EXPECT_EQ(aligned->all.after, aligned->all.before);
+}
+
+TEST(AlignInteriors, AlignsFrontsWithFrontsAndBacksWithBacks) {
+  const CompatibleMesh mesh = SquareMesh(4);
+  const auto aligned = Align(mesh, {Face(74, 80), BackOfHead(86), Face(86, 80), BackOfHead(74)});
+  ASSERT_THAT(aligned, Succeeds());
+  const std::vector<Points>& poses = aligned->poses;
+  EXPECT_NEAR(MeanWay(poses[0], poses[2], {74, 80}, 15.0).x(), 12.0, 2.0);
+  EXPECT_NEAR(MeanWay(poses[3], poses[1], {74, 60}, 12.0).x(), 12.0, 2.0);
+  EXPECT_LT(aligned->all.after, aligned->all.before);
+}
+
+TEST(AlignInteriors, MovesNothingWhereNothingCorrespondsWhileAnEyeIsAligned) {
+  Image left = Face(40, 80), right = Face(48, 80);
+  PaintBox(&left, 110, 40, 8, 30, kInk);   // a scar
+  PaintDisc(&right, 128, 110, 8, kWhite);  // a button
+  const CompatibleMesh mesh = SquareMesh(2);
+  const auto aligned = Align(mesh, {left, right});
+  ASSERT_THAT(aligned, Succeeds());
+  EXPECT_NEAR(MeanWay(aligned->poses[0], aligned->poses[1], {40, 80}, 15.0).x(), 8.0, 1.5);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LT(MeanWay(mesh.poses[i], aligned->poses[i], {114, 55}, 15.0).norm(), 1.0);
+    EXPECT_LT(MeanWay(mesh.poses[i], aligned->poses[i], {128, 110}, 15.0).norm(), 1.0);
   }
 }
 
