@@ -9,6 +9,7 @@
 #include <string>
 
 #include "geometry/polygon.h"
+#include "mapping/close_matching.h"
 #include "mapping/common_rows.h"
 #include "mapping/landmark_completion.h"
 #include "mapping/landmark_marks.h"
@@ -200,11 +201,13 @@ class GroupMatching {
 
   OutlineMap Match(int a, int b, const std::vector<Anchor>& anchors) const {
     const ComparedPair& pair = Pair(a, b);
-    OutlineMap map = MatchSymmetrically(curves_[a], mirror_sums_[a], curves_[b], mirror_sums_[b],
-                                        anchors, pair.starts, pair.weights)
-                         .map;
-    return KeepStrokesTogether(curves_[a], sides_[a], curves_[b], sides_[b], anchors,
-                               std::move(map), pair.weights);
+    const OutlineMap map = MatchSymmetrically(curves_[a], mirror_sums_[a], curves_[b],
+                                              mirror_sums_[b], anchors, pair.starts, pair.weights)
+                               .map;
+    OutlineMap close =
+        MatchClosely(curves_[a], sides_[a], curves_[b], sides_[b], anchors, map, pair.weights);
+    if (!anchors.empty()) return close;
+    return KeepSymmetry(map, mirror_sums_[a], mirror_sums_[b], std::move(close));
   }
 
   bool FillLandmarks() {

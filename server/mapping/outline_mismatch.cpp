@@ -8,8 +8,8 @@ namespace posespace {
 namespace {
 
 constexpr double kMismatchSlope = 4.5;
-constexpr double kLeastMismatch = 0.12;  // drawings of unlike but well matched things reach 0.10
-constexpr double kLeastMarkedMismatch = 0.1;
+constexpr double kLeastMismatch = 0.14;  // well matched drawings reach 0.13
+constexpr double kLeastMarkedMismatch = 0.12;
 constexpr int kMismatchSteps = 256;
 
 // The share of two outlines, with maps from a common parameter and from `from` for `length` turns

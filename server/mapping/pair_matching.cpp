@@ -15,66 +15,13 @@ constexpr int kCoarseSamples = 64;
 constexpr int kFineSamples = 256;
 constexpr int kRefinement = 4;     // the last pass has this many samples for each fine one
 constexpr int kBandSamples = 2;    // fine samples either side that the last pass may move
-constexpr int kLeastSamples = 4;   // of the shortest arc between anchors
 constexpr int kCoarseMaxStep = 3;  // slopes from 1/3 to 3
 constexpr int kFineMaxStep = 6;    // slopes from 1/6 to 6
 constexpr int kStartsKept = 3;
 constexpr int kRecuts = 2;
 constexpr double kLeastRecut = 0.25;  // turns from the old cut to the new
 constexpr int kTurnColumns = 4;       // columns 0, 2, 4, 6 of the features
-constexpr int kStrokePasses = 3;
-constexpr double kStrokeShare = 0.5;  // of an outline that has a place across: then it is a stroke
-constexpr int kSideReach = 16;        // samples of the last pass that a side may move in one more
-constexpr double kSideLimit = 0.06;   // turns that the sides may have slipped
-constexpr double kSidePull = 600.0;   // unlikeness a squared turn of slip
 constexpr double kStartTie = 1.15;    // costs within this ratio do not tell starts apart
-
-// The part of both outlines from one anchor to the next, sampled evenly on each.
-struct Arc {
-  Anchor begin;
-  double length_a;  // turns
-  double length_b;
-};
-
-std::vector<double> Samples(double begin, double length, int intervals) {
-  std::vector<double> positions(intervals + 1);
-  for (int k = 0; k <= intervals; ++k) positions[k] = begin + length * k / intervals;
-  return positions;
-}
-
-// Shape and position features, then thickness and colours when they count.
-Eigen::MatrixXd FeaturesOf(const OutlineCurve& curve, const std::vector<double>& positions,
-                           const PairWeights& weights) {
-  Eigen::MatrixXd features = curve.Features(positions, weights.position);
-  if (weights.thickness > 0.0) {
-    features.conservativeResize(Eigen::NoChange, features.cols() + 1);
-    features.rightCols<1>() = std::sqrt(weights.thickness) * curve.LogThickness(positions);
-  }
-  if (weights.colour <= 0.0) return features;
-  features.conservativeResize(Eigen::NoChange, features.cols() + 3);
-  features.rightCols<3>() = std::sqrt(weights.colour) * curve.Colours(positions);
-  return features;
-}
-
-double TurnsFrom(double begin, double end) {
-  const double turns = end - begin;
-  return turns - std::floor(turns);
-}
-
-std::vector<Arc> ArcsBetween(const std::vector<Anchor>& anchors) {
-  std::vector<Arc> arcs;
-  if (anchors.size() == 1) return {{anchors[0], 1.0, 1.0}};
-  for (std::size_t k = 0; k < anchors.size(); ++k) {
-    const Anchor &begin = anchors[k], &end = anchors[(k + 1) % anchors.size()];
-    arcs.push_back({begin, TurnsFrom(begin.on_a, end.on_a), TurnsFrom(begin.on_b, end.on_b)});
-  }
-  return arcs;
-}
-
-int SamplesOf(const Arc& arc, int samples_per_turn) {
-  const double share = 0.5 * (arc.length_a + arc.length_b);
-  return std::max(kLeastSamples, static_cast<int>(std::lround(share * samples_per_turn)));
-}
 
 Alignment AlignArc(const OutlineCurve& a, const OutlineCurve& b, const Arc& arc, int intervals,
                    int max_step, const PairWeights& weights) {
@@ -117,67 +64,6 @@ Alignment Refine(const OutlineCurve& a, const OutlineCurve& b, const Arc& arc,
   return ElasticProgramme(kFineMaxStep, weights.stretch).Align(band);
 }
 
-// Appends an arc's path to a map under construction, without its last point.
-void AppendKnots(const Arc& arc, const Alignment& alignment, int intervals,
-                 std::vector<double>& from, std::vector<double>& to) {
-  const double turn_a =
-      from.empty() ? arc.begin.on_a : from.back() + TurnsFrom(from.back(), arc.begin.on_a);
-  const double turn_b =
-      to.empty() ? arc.begin.on_b : to.back() + TurnsFrom(to.back(), arc.begin.on_b);
-  for (std::size_t k = 0; k + 1 < alignment.path.size(); ++k) {
-    const auto [row, column] = alignment.path[k];
-    from.push_back(turn_a + arc.length_a * row / intervals);
-    to.push_back(turn_b + arc.length_b * column / intervals);
-  }
-}
-
-OutlineMap Closed(std::vector<double> from, std::vector<double> to) {
-  from.push_back(from.front() + 1.0);
-  to.push_back(to.front() + 1.0);
-  return {std::move(from), std::move(to)};
-}
-
-// The alignment of an arc near `map`, with each place of a thin stroke drawn towards the middle
-// between its image and the place across from the image of its opposite side.
-Alignment AlignSides(const OutlineCurve& a, const StrokeSides& sides_a, const OutlineCurve& b,
-                     const StrokeSides& sides_b, const Arc& arc, int intervals,
-                     const OutlineMap& map, const PairWeights& weights) {
-  const std::vector<double> on_a = Samples(arc.begin.on_a, arc.length_a, intervals);
-  const std::vector<double> on_b = Samples(arc.begin.on_b, arc.length_b, intervals);
-  const Eigen::MatrixXd features_a = FeaturesOf(a, on_a, weights);
-  const Eigen::MatrixXd features_b = FeaturesOf(b, on_b, weights);
-
-  AlignmentBand band{intervals, nullptr, 0, std::vector<int>(intervals + 1), 0};
-  band.width = std::min(2 * kSideReach, intervals) + 1;
-  band.stride = band.width;
-  std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(intervals + 1) * band.width);
-  double before = on_b[0];
-  for (int i = 0; i <= intervals; ++i) {
-    double image = map.At(on_a[i]);
-    image += std::round(before - image);
-    if (i == intervals) image = on_b.back();
-    before = image;
-    const double column = (image - arc.begin.on_b) / arc.length_b * intervals;
-    band.low[i] = std::clamp(static_cast<int>(std::lround(column)) - band.width / 2,
-                             i == 0 ? 0 : band.low[i - 1], intervals + 1 - band.width);
-    std::optional<double> target;
-    if (const auto opposite = sides_a.Across(on_a[i])) {
-      if (const auto across = sides_b.Across(map.At(*opposite))) {
-        const double away = *across - image - std::round(*across - image);
-        if (std::abs(away) < kSideLimit) target = image + 0.5 * away;
-      }
-    }
-    for (int j = band.low[i]; j < band.low[i] + band.width; ++j) {
-      const double slip = target ? on_b[j] - *target : 0.0;
-      values.push_back((features_a.row(i) - features_b.row(j)).squaredNorm() +
-                       kSidePull * slip * slip);
-    }
-  }
-  band.values = values.data();
-  return ElasticProgramme(kFineMaxStep, weights.stretch).Align(band);
-}
-
 struct Match {
   double cost;
   OutlineMap map;
@@ -186,18 +72,18 @@ struct Match {
 Match MatchArcs(const OutlineCurve& a, const OutlineCurve& b, const std::vector<Anchor>& anchors,
                 int samples, int max_step, bool refine, const PairWeights& weights) {
   double cost = 0.0;
-  std::vector<double> from, to;
+  ArcsToMap map;
   for (const Arc& arc : ArcsBetween(anchors)) {
-    int intervals = SamplesOf(arc, samples);
+    int intervals = IntervalsOf(arc, samples);
     Alignment alignment = AlignArc(a, b, arc, intervals, max_step, weights);
     if (refine) {
       alignment = Refine(a, b, arc, alignment, intervals, weights);
       intervals *= kRefinement;
     }
     cost += 0.5 * (arc.length_a + arc.length_b) * alignment.cost;
-    AppendKnots(arc, alignment, intervals, from, to);
+    map.Append(arc, alignment, intervals);
   }
-  return {cost, Closed(std::move(from), std::move(to))};
+  return {cost, std::move(map).Map()};
 }
 
 // The pair of places on the map where both outlines turn most, away from the cut.
@@ -262,10 +148,11 @@ CoarseMatch MatchCoarsely(const OutlineCurve& a, const OutlineCurve& b,
   const std::vector<int> shifts = LikeliestShifts(costs);
   const Alignment alignment = programme.Align(WholeBlock(unlikeness, m, shifts[0]));
   const Anchor start{0.0, static_cast<double>(shifts[0]) / m};
-  std::vector<double> from, to, starts;
-  AppendKnots({start, 1.0, 1.0}, alignment, m, from, to);
+  ArcsToMap map;
+  map.Append({start, 1.0, 1.0}, alignment, m);
+  std::vector<double> starts;
   for (const int s : shifts) starts.push_back(static_cast<double>(s) / m);
-  return {alignment.cost, Closed(std::move(from), std::move(to)), std::move(starts)};
+  return {alignment.cost, std::move(map).Map(), std::move(starts)};
 }
 
 FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
@@ -302,25 +189,6 @@ FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
   }
   Match refined = match_from({MostSalient(a, b, best->map)}, true);
   return {refined.cost, std::move(refined.map)};
-}
-
-OutlineMap KeepStrokesTogether(const OutlineCurve& a, const StrokeSides& sides_a,
-                               const OutlineCurve& b, const StrokeSides& sides_b,
-                               const std::vector<Anchor>& anchors, OutlineMap map,
-                               const PairWeights& weights) {
-  if (std::min(sides_a.share(), sides_b.share()) < kStrokeShare) return map;
-  const std::vector<Anchor> through =
-      anchors.empty() ? std::vector<Anchor>{{map.from().front(), map.to().front()}} : anchors;
-  for (int pass = 0; pass < kStrokePasses; ++pass) {
-    std::vector<double> from, to;
-    for (const Arc& arc : ArcsBetween(through)) {
-      const int intervals = kRefinement * SamplesOf(arc, kFineSamples);
-      const Alignment alignment = AlignSides(a, sides_a, b, sides_b, arc, intervals, map, weights);
-      AppendKnots(arc, alignment, intervals, from, to);
-    }
-    map = Closed(std::move(from), std::move(to));
-  }
-  return map;
 }
 
 double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map) {

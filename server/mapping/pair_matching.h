@@ -4,26 +4,11 @@
 
 #include <vector>
 
+#include "mapping/matching_arcs.h"
 #include "mapping/outline_curve.h"
 #include "mapping/outline_map.h"
-#include "mapping/stroke_sides.h"
 
 namespace posespace {
-
-// What makes two places of two outlines unlike, as in MatchingOptions; a weight of 0 leaves
-// colours or thickness out.
-struct PairWeights {
-  double position;
-  double colour;
-  double stretch;
-  double thickness;
-};
-
-// A position on each of two outlines that are the same place.
-struct Anchor {
-  double on_a;
-  double on_b;
-};
 
 struct CoarseMatch {
   double cost;
@@ -48,14 +33,6 @@ CoarseMatch MatchCoarsely(const OutlineCurve& a, const OutlineCurve& b,
 FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,
                       const std::vector<Anchor>& anchors, const std::vector<double>& starts,
                       const PairWeights& weights);
-
-// The same match with the two sides of thin strokes kept together, where both drawings are made of
-// such for the most part, as letters and stick figures are: each place is drawn towards the middle
-// between its match and the place across from the match of its opposite side.
-OutlineMap KeepStrokesTogether(const OutlineCurve& a, const StrokeSides& sides_a,
-                               const OutlineCurve& b, const StrokeSides& sides_b,
-                               const std::vector<Anchor>& anchors, OutlineMap map,
-                               const PairWeights& weights);
 
 // The mean colour difference along the map, RGB in [0, 1].
 double MeanColourDifference(const OutlineCurve& a, const OutlineCurve& b, const OutlineMap& map);

@@ -15,6 +15,7 @@ constexpr double kLeastDeviation = 0.01;  // turns; what is off by less looks sy
 // real drawings it costs 0.75 to 1.03 times as much.
 constexpr double kSymmetricTie = 1.1;
 constexpr double kSamePlace = 0.01;  // turns
+constexpr double kExact = 1e-9;      // turns; deviations of exactly symmetric maps, by rounding
 
 bool IsSamePlace(double position, double other) {
   return std::abs(position - other - std::round(position - other)) < kSamePlace;
@@ -76,6 +77,13 @@ FineMatch MatchSymmetrically(const OutlineCurve& a, const std::vector<double>& s
   if (symmetric.cost > kSymmetricTie * match.cost) return match;
   if (anchors.empty()) symmetric.map = Symmetrised(symmetric.map, *symmetry);
   return symmetric;
+}
+
+OutlineMap KeepSymmetry(const OutlineMap& match, const std::vector<double>& sums_a,
+                        const std::vector<double>& sums_b, OutlineMap close) {
+  const auto symmetry = BestKeptSymmetry(sums_a, sums_b, match);
+  if (!symmetry || symmetry->deviation > kExact) return close;
+  return Symmetrised(close, *symmetry);
 }
 
 }  // namespace posespace

@@ -27,6 +27,11 @@ FineMatch MatchSymmetrically(const OutlineCurve& a, const std::vector<double>& s
                              const std::vector<Anchor>& anchors, const std::vector<double>& starts,
                              const PairWeights& weights);
 
+// `close`, or where `match` is exactly symmetric, as MatchSymmetrically makes it, `close` made so
+// by the same symmetries.
+OutlineMap KeepSymmetry(const OutlineMap& match, const std::vector<double>& sums_a,
+                        const std::vector<double>& sums_b, OutlineMap close);
+
 }  // namespace posespace
 
 #endif  // POSESPACE_MAPPING_SYMMETRIC_MATCHING_H_

@@ -291,7 +291,7 @@ TEST(MatchBoundaries, FindsTheKnownCorrespondenceOfLetterMasters) {
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) sum += MeanError(match, outlines, i, j);
     }
-    EXPECT_LT(sum / (n * (n - 1)), 0.02) << group;
+    EXPECT_LT(sum / (n * (n - 1)), 0.01) << group;
   }
 }
 

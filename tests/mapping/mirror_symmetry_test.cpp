@@ -202,5 +202,28 @@ TEST(MatchBoundaries, KeepsHalvesOfSymmetricDrawingsSymmetricBesideOnesThatAreNo
   }
 }
 
+TEST(KeepSymmetry, MakesAMatchSymmetricAgainWhereTheOneBeforeItWas) {
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    const SymmetricPair pair(seed);
+    const OutlineMap free = pair.Free().map;
+    const auto symmetry = BestKeptSymmetry(pair.sums_a, pair.sums_b, free);
+    ASSERT_TRUE(symmetry.has_value());
+    const OutlineMap match = Symmetrised(free, *symmetry);
+    const OutlineMap close = OutlineMap({0.0, 0.3, 1.0}, {0.0, 0.302, 1.0}).Then(match);
+    EXPECT_GT(pair.Deviation(close), 1e-4);
+    const OutlineMap kept = KeepSymmetry(match, pair.sums_a, pair.sums_b, close);
+    EXPECT_LT(pair.Deviation(kept), 1e-9);
+    ExpectStrictlyIncreasing(kept);
+  }
+}
+
+TEST(KeepSymmetry, LeavesAMatchAsItIsWhereTheOneBeforeItWasNotSymmetric) {
+  const SymmetricPair pair(1);
+  const OutlineMap off({0.0, 0.3, 1.0}, {0.0, 0.302, 1.0});
+  const OutlineMap match = off.Then(pair.Symmetric().map);
+  ASSERT_GT(pair.Deviation(match), 1e-4);
+  EXPECT_EQ(KeepSymmetry(match, pair.sums_a, pair.sums_b, off).to(), off.to());
+}
+
 }  // namespace
 }  // namespace posespace
