@@ -31,8 +31,9 @@ class PlacementFade {
   // Fields that are left at a time, at most: each costs every weight one more evaluation.
   static constexpr std::size_t kMostLeft = 4;
 
-  // A field that was left is kept so long for a first frame.
-  static constexpr std::chrono::seconds kPatience{2};
+  // A field that was left is kept so long for a first frame: who asks for what has moved alone
+  // hears of the change within a second or so, and then asks.
+  static constexpr std::chrono::seconds kPatience{10};
 
   // No length: every change is at once.
   explicit PlacementFade(Clock::duration length) : length_(length) {}

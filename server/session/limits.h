@@ -22,7 +22,7 @@ struct Limits {
   int max_animation_frames = 100'000;            // of one Animate
   int max_render_frames = 10'000;                // of one Render along a path
   // Affects how Play's frames come over to new placements.
-  std::chrono::milliseconds placement_fade{150};  // as long as the eye follows, yet no wait
+  std::chrono::milliseconds placement_fade{150};  // seen, and no wait
   // Affect how much runs at once.
   std::int64_t max_memory_bytes = std::int64_t{2} << 30;  // of sessions that nobody uses just now
   int max_sessions = 10'000;
