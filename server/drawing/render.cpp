@@ -82,9 +82,9 @@ int RenderTexture::LevelFor(double length) const {
   return static_cast<int>(std::min<double>(level, static_cast<double>(levels_.size()) - 1));
 }
 
-float RenderTexture::EdgeDistanceAt(const Point& place) const {
+RenderTexture::EdgePlace RenderTexture::EdgePlaceAt(const Point& place) const {
   const Level& finest = levels_[0];
-  if (edge_distance_.empty()) return std::numeric_limits<float>::lowest();
+  if (edge_distance_.empty()) return {std::numeric_limits<float>::lowest(), {0.0f, 0.0f}};
   const Point at = (place - origin_) * finest.scale - Point(0.5, 0.5);
   const Point nearest = at.cwiseMax(0.0).cwiseMin(Point(finest.width - 1.0, finest.height - 1.0));
   const int x = std::min(static_cast<int>(nearest.x()), std::max(0, finest.width - 2));
@@ -93,10 +93,14 @@ float RenderTexture::EdgeDistanceAt(const Point& place) const {
   const float s = static_cast<float>(nearest.x() - x), t = static_cast<float>(nearest.y() - y);
   const std::int16_t* cell =
       edge_distance_.data() + static_cast<std::ptrdiff_t>(y) * finest.width + x;
-  const float units = (1.0f - t) * ((1.0f - s) * cell[0] + s * cell[right]) +
-                      t * ((1.0f - s) * cell[below] + s * cell[below + right]);
+  const float above_at = (1.0f - s) * cell[0] + s * cell[right];
+  const float below_at = (1.0f - s) * cell[below] + s * cell[below + right];
+  const float to_right = (1.0f - t) * static_cast<float>(cell[right] - cell[0]) +
+                         t * static_cast<float>(cell[below + right] - cell[below]);
+  const float units = (1.0f - t) * above_at + t * below_at;
   const float beyond = static_cast<float>((at - nearest).norm());
-  return (units / kEdgeDistanceUnits - beyond) / static_cast<float>(finest.scale);
+  return {(units / kEdgeDistanceUnits - beyond) / static_cast<float>(finest.scale),
+          Eigen::Vector2f(to_right, below_at - above_at) / kEdgeDistanceUnits};
 }
 
 Eigen::Array4f RenderTexture::ColourBeyond(const Point& place) const {
@@ -179,6 +183,7 @@ struct ActiveLayer {
   float weight;
   int level;
   float texel;  // side of the level's texels, drawing pixels
+  float pixel;  // side of a pixel of the picture, drawing pixels, over the whole mesh
 };
 
 double TotalArea(const Triangles& triangles, const Points& vertices) {
@@ -205,7 +210,7 @@ std::vector<ActiveLayer> ActiveLayers(const Triangles& triangles, const Points& 
     const double pixel = std::sqrt(TotalArea(triangles, *layer.pose) / drawn_area);
     const int level = layer.texture->LevelFor(pixel);
     result.push_back({layer.pose, layer.texture, static_cast<float>(layer.weight * total / active),
-                      level, layer.texture->TexelSize(level)});
+                      level, layer.texture->TexelSize(level), static_cast<float>(pixel)});
   }
   return result;
 }
@@ -240,9 +245,32 @@ float TexelsInside(float alpha, float distance) {
   return std::lerp(near, distance, std::clamp(std::abs(distance) - 1.0f, 0.0f, 1.0f));
 }
 
+// How a triangle shows a layer: the map from pixels to its drawing, beside that of the whole mesh.
+class Shape {
+ public:
+  // A step to the right and one down in the picture, and a pixel's side, all in drawing pixels.
+  Shape(const Point& right, const Point& down, float pixel) {
+    const Point x = right / double{pixel}, y = down / double{pixel};
+    squared_ = (x * x.transpose() + y * y.transpose()).cast<float>();
+    area_ = static_cast<float>(std::abs(Cross(Point::Zero(), x, y)));
+  }
+  // How many times as fast as elsewhere an edge with this normal is crossed in the picture: more
+  // where the drawing is shown squeezed, less where it is stretched.
+  float Across(const Eigen::Vector2f& inward) const {
+    const float length = inward.squaredNorm();
+    const float squared = inward.dot(squared_ * inward);
+    return std::sqrt(length > 1.0f ? squared / length : squared + (1.0f - length) * area_);
+  }
+
+ private:
+  Eigen::Matrix2f squared_;
+  float area_;
+};
+
 // The places in a layer's drawing of a run of pixels.
 struct Run {
   Point from, step;
+  const Shape* shape;
   Point At(std::size_t pixel) const { return from + static_cast<double>(pixel) * step; }
 };
 
@@ -250,13 +278,13 @@ struct Run {
 struct Brush {
   std::vector<ActiveLayer> layers;
   bool crisp = false;  // two layers or more may disagree about what is painted
-  float texel = 0.0f;  // mean over the layers
 
   // Makes a pixel as opaque as the layers that are painted there, if it is to be painted, in the
   // mean colour of all layers: that of one which is not painted there is that beside.  Where the
   // layers agree it stays as it is, and so do shades fainter than an edge.
   void Sharpen(std::span<const Run> runs, std::size_t index, MixedPixel* pixel) const {
     float covered = 0.0f, inside = 0.0f;  // means over the layers; inside in drawing pixels
+    float edge = 0.0f;                    // width of the edge of the mix, drawing pixels
     Eigen::Array4f colour = Eigen::Array4f::Zero();  // opaque
     for (std::size_t k = 0; k < layers.size(); ++k) {
       const ActiveLayer& layer = layers[k];
@@ -264,15 +292,18 @@ struct Brush {
       const Eigen::Array4f shown = layer.texture->At(place, layer.level);
       const float alpha = std::min(shown[3], 1.0f);
       colour += layer.weight * (shown + (1.0f - alpha) * layer.texture->ColourBeyond(place));
-      const float texels = TexelsInside(alpha, layer.texture->EdgeDistanceAt(place) / layer.texel);
+      const RenderTexture::EdgePlace at = layer.texture->EdgePlaceAt(place);
+      const float texels = TexelsInside(alpha, at.inside / layer.texel);
       covered += layer.weight * Coverage(texels);
       inside += layer.weight * layer.texel * texels;
+      edge += layer.weight * layer.texel * runs[k].shape->Across(at.inward);
     }
     if (!(covered > 0.0f)) return;
     // As opaque as the mix is where it covers; and opaque where a layer is, whatever the estimate
     // of what edges leave of it.
-    constexpr float kNearlyOpaque = 0.9f;
-    const float share = Coverage(inside / texel), opacity = pixel->colour[3] / covered;
+    constexpr float kNearlyOpaque = 0.9f, kThinnest = 1e-6f;
+    const float share = Coverage(inside / std::max(edge, kThinnest)),
+                opacity = pixel->colour[3] / covered;
     const float opaque =
         std::clamp((pixel->most_alpha - kNearlyOpaque) / (1.0f - kNearlyOpaque), 0.0f, 1.0f);
     const float dispute = std::min(2.0f * (pixel->most_alpha - pixel->least_alpha), 1.0f);
@@ -355,7 +386,15 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
   const std::array<double, 3> along_x = {static_cast<double>(edges[0].along_x),
                                          static_cast<double>(edges[1].along_x),
                                          static_cast<double>(edges[2].along_x)};
-  std::vector<Run> runs;  // one a layer
+  const std::array<double, 3> along_y = {static_cast<double>(edges[0].along_y),
+                                         static_cast<double>(edges[1].along_y),
+                                         static_cast<double>(edges[2].along_y)};
+  std::vector<Shape> shapes;  // by layer
+  for (const ActiveLayer& layer : brush.layers) {
+    shapes.emplace_back(place_of(*layer.pose, along_x), place_of(*layer.pose, along_y),
+                        layer.pixel);
+  }
+  std::vector<Run> runs;  // by layer
   for (int y = static_cast<int>(first_row); y <= last_row; ++y) {
     const auto [first, last] = CoveredSpan(edges, y, view.width);
     if (first >= last) continue;
@@ -366,8 +405,9 @@ void DrawTriangle(const std::array<int, 3>& corners, const std::vector<Fixed>& f
     }
     const std::span<MixedPixel> mixed = canvas->Mixing(last - first);
     runs.clear();
-    for (const ActiveLayer& layer : brush.layers) {
-      const Run run{place_of(*layer.pose, values), place_of(*layer.pose, along_x)};
+    for (std::size_t k = 0; k < brush.layers.size(); ++k) {
+      const ActiveLayer& layer = brush.layers[k];
+      const Run run{place_of(*layer.pose, values), place_of(*layer.pose, along_x), &shapes[k]};
       for (std::size_t i = 0; i < mixed.size(); ++i) {
         mixed[i].Add(layer.texture->At(run.At(i), layer.level), layer.weight);
       }
@@ -401,7 +441,6 @@ Image Render(const Triangles& triangles, const Points& vertices,
   }
   Brush brush{ActiveLayers(triangles, vertices, layers, view)};
   brush.crisp = edges == PaintEdges::kCrisp && brush.layers.size() > 1;
-  for (const ActiveLayer& layer : brush.layers) brush.texel += layer.weight * layer.texel;
   std::vector<Fixed> fixed(vertices.rows());
   for (Eigen::Index k = 0; k < vertices.rows(); ++k) {
     fixed[k] = ToFixed(vertices.row(k).transpose(), view);

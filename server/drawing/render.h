@@ -29,9 +29,12 @@ class RenderTexture {
   // The side of that level's texels, drawing pixels.
   float TexelSize(int level) const { return static_cast<float>(1.0 / levels_[level].scale); }
 
-  // How far inside the painting a place lies (edge_distance.h), drawing pixels, bilinear; negative
-  // outside.
-  float EdgeDistanceAt(const Point& place) const;
+  // Where a place lies to the edge of the painting (edge_distance.h), bilinear.
+  struct EdgePlace {
+    float inside;            // how far inside, drawing pixels; negative outside
+    Eigen::Vector2f inward;  // its gradient: about a unit long, shorter halfway between two edges
+  };
+  EdgePlace EdgePlaceAt(const Point& place) const;
 
   // The colour of the painting at a place beyond it, continued smoothly: opaque, linear RGBA.
   Eigen::Array4f ColourBeyond(const Point& place) const;
@@ -86,7 +89,9 @@ enum class PaintEdges {
 // Triangles share their edges by a top-left rule: no seams, no pixel drawn twice by neighbours;
 // where the mesh overlaps itself, later triangles lie on top (where they are transparent, what is
 // below shows).  Silhouettes are antialiased by the textures' own alpha, since the mesh encloses
-// every painted pixel; where poses disagree, as `edges` says, and nothing changes where they agree.
+// every painted pixel; where poses disagree, as `edges` says, and nothing changes where they agree
+// and are shown in the same shape.  A crisp silhouette is as wide on triangles that are shown
+// stretched or squeezed as elsewhere.
 // Coverage is decided on vertices rounded to 1/1024 output pixel.  A layer shown smaller than its
 // texture is taken from one reduction of it, chosen for the whole mesh.
 //

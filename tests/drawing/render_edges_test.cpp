@@ -98,6 +98,52 @@ TEST(CrispEdges, ChangeNothingWhereDrawingsAgree) {
   }
 }
 
+// Half and half of two pictures whose columns left of `strip` are shown `shown` pixels wide, and
+// the others as they are.
+Image MixReshaped(const Image& a, const Image& b, double strip, double shown) {
+  const RenderTexture first({a}), second({b});
+  Points pose(6, 2), vertices(6, 2);
+  pose << 0, 0, strip, 0, kSide, 0, 0, kSide, strip, kSide, kSide, kSide;
+  vertices = pose;
+  for (const int v : {1, 2, 4, 5}) vertices(v, 0) += shown - strip;
+  Triangles triangles(4, 3);
+  triangles << 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4;
+  const RenderLayer layers[] = {{&pose, &first, 0.5}, {&pose, &second, 0.5}};
+  const int width = static_cast<int>(kSide - strip + shown);
+  return Render(triangles, vertices, layers, {{0, 0}, 1.0, width, kSide});
+}
+
+// Painted left of an edge that runs from `top` to `bottom`, antialiased.
+Image LeftOf(double top, double bottom) {
+  Image image = PictureOf(kSide, kSide);
+  for (int y = 0; y < kSide; ++y) {
+    const double edge = top + (bottom - top) * (y + 0.5) / kSide;
+    for (int x = 0; x < kSide; ++x) {
+      image.at(x, y)[3] = static_cast<std::uint8_t>(255 * std::clamp(edge - x, 0.0, 1.0));
+    }
+  }
+  return image;
+}
+
+TEST(CrispEdges, StaySharpWhereTheDrawingIsShownStretched) {
+  const Image mixed = MixReshaped(LeftOf(6, 6), LeftOf(10, 10), 16, 128);
+  const std::vector<double> row = Row(mixed);
+  EXPECT_NEAR(WidthOf(row), 8 * 8, 4.0);
+  EXPECT_LE(Faint(row), 4);
+}
+
+TEST(CrispEdges, AreAntialiasedWhereTheDrawingIsShownSqueezed) {
+  constexpr double kStrip = 32.0, kShown = 6.0;
+  const Image mixed = MixReshaped(LeftOf(10, 18), LeftOf(14, 22), kStrip, kShown);
+  for (int y = 4; y < kSide - 4; ++y) {
+    const double edge = (12.0 + 8.0 * (y + 0.5) / kSide) * kShown / kStrip;  // pixels
+    for (int x = 0; x < 6; ++x) {
+      EXPECT_NEAR(mixed.at(x, y)[3] / 255.0, std::clamp(edge - x, 0.0, 1.0), 0.15)
+          << x << ", " << y;
+    }
+  }
+}
+
 // A disc in the middle, antialiased.
 Image SmoothDisc(double radius) {
   Image image = PictureOf(kSide, kSide);
