@@ -78,7 +78,7 @@ struct MatchedOutlines {
   // Never applied here: a flip mirrors the artwork, and only a person knows.  None is proposed when
   // its gain is below 1.05 or there are landmarks, which say which way round a drawing is.
   FlipProposal proposal;
-  // The worst of them with a share above 0.14, or above 0.12 when there are landmarks to doubt.
+  // The worst of them with a share above 0.15, or above 0.12 when there are landmarks to doubt.
   std::optional<Mismatch> mismatch;
 };
 

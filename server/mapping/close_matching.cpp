@@ -18,23 +18,24 @@ constexpr int kMaxStep = 6;     // slopes from 1/6 to 6
 constexpr int kPasses = 3;
 constexpr double kRecut = 0.382;  // turns from the cut of one pass to that of the next
 
-constexpr double kArm = 0.004;  // turns either side, for the direction of the outline
-constexpr double kDirectionWeight = 0.5;
-// Stretching weighs this many times as much as in the match before: where directions agree nowhere,
-// as at limbs that the other drawing does not have, outlines would be squeezed to nothing instead.
-constexpr double kStiffness = 3.0;
-constexpr double kReach = 0.06;  // turns that a place may move in a pass
+// Weights beside those of the match before.  Directions are to decide: windows that span corners
+// would stretch straight runs unevenly.  And where directions agree nowhere, as at limbs that the
+// other drawing does not have, outlines must not be squeezed to nothing instead.
+constexpr double kDirectionWeight = 2.0;  // of the squared difference of unit vectors
+constexpr double kStiffness = 12.0;       // times the weight of stretching
+constexpr double kArm = 0.004;            // turns either side, for the direction of the outline
+constexpr double kReach = 0.06;           // turns that a place may move in a pass
 constexpr int kRotationSamples = 256;
 constexpr double kPart = 0.06;  // turns, the standard deviation of the window of a part's rotation
 // What the match may cost more when the drawings are turned as a whole: letters cost up to 1.15
 // times as much or too little to tell, swinging limbs 1.2 to 2 times, bent bars 4 and more.
 constexpr double kWholeTie = 1.15;
-constexpr double kWholeTieCost = 0.0015;
+constexpr double kWholeTieCost = 0.006;
 
 constexpr double kStrokeShare = 0.5;  // of an outline that has a place across: then it is a stroke
 constexpr double kSideReach = 0.016;  // turns that a side may move in a pass
 constexpr double kSideLimit = 0.06;   // turns that the sides may have slipped
-constexpr double kSidePull = 600.0;   // unlikeness a squared turn of slip
+constexpr double kSidePull = 2400.0;  // unlikeness a squared turn of slip
 
 // A direction or a rotation, of absolute value 1.
 using Direction = std::complex<double>;
