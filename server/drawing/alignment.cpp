@@ -7,6 +7,7 @@
 #include "drawing/comparison.h"
 #include "drawing/ghost_loss.h"
 #include "drawing/group_alignment.h"
+#include "drawing/group_linking.h"
 #include "drawing/kin.h"
 #include "drawing/paint_filling.h"
 #include "drawing/with_opencv.h"
@@ -38,7 +39,7 @@ cv::Mat1b PaintedIn(const Pictures& pictures, std::span<const int> drawings) {
   return mask;
 }
 
-// The drawings that show the same, but for plain ones: they show nothing to go by.
+// The drawings by what they show, but for plain ones: they show nothing to go by.
 Result<std::vector<AlignmentGroup>> GroupsOf(const Pictures& pictures,
                                              std::span<const ReducedTexture> textures,
                                              const Progress* progress) {
@@ -52,7 +53,6 @@ Result<std::vector<AlignmentGroup>> GroupsOf(const Pictures& pictures,
   std::vector<AlignmentGroup> groups;
   const auto kindred = TRY(KinOf(filled, PaintedIn(pictures, drawings), progress));
   for (const std::vector<int>& kin : kindred) {
-    if (kin.size() < 2) continue;
     AlignmentGroup group;
     for (const int k : kin) {
       group.members.push_back(drawings[k]);
@@ -85,13 +85,16 @@ Result<Alignment> Align(const CompatibleMesh& mesh, const Points& common,
   if (before.all < kInvisible) return result;
 
   std::vector<AlignmentGroup> groups = TRY(GroupsOf(pictures, textures, progress));
-  std::vector<cv::Mat3f> aligned = pictures.filled;
-  const double part = 1.0 / std::max<double>(1.0, static_cast<double>(groups.size()));
+  const double part = 1.0 / (static_cast<double>(groups.size()) + 1.0);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    AlignmentGroup& group = groups[g];
     const double begin = static_cast<double>(g) * part;
     Progress of_group(progress, begin, begin + part);
-    TRY(AlignGroup(comparison, &group, &of_group));
+    TRY(AlignGroup(comparison, &groups[g], &of_group));
+  }
+  Progress of_links(progress, 1.0 - part, 1.0);
+  TRY(LinkGroups(comparison, painted, &groups, &of_links));
+  std::vector<cv::Mat3f> aligned = pictures.filled;
+  for (const AlignmentGroup& group : groups) {
     for (std::size_t k = 0; k < group.members.size(); ++k) {
       aligned[group.members[k]] = group.pictures[k];
     }

@@ -48,7 +48,8 @@ struct Alignment {
 //
 // All drawings are warped to `common` (V x 2, such as the blend with equal weights); there,
 // drawings that show the same are kin (kin.h), as fronts of a figure are, or backs of it, and each
-// group of kin is aligned by itself: a face and the back of a head have nothing to bring together.
+// group of kin is aligned by itself: a face and the back of a head have nothing to bring together;
+// then groups, gently, where they do have something in common (group_linking.h).
 // Image flow from the one that differs least from its kin says where each one's features lie.  A
 // field that follows the flow at features, as far as pictures agree about them, and is smooth
 // elsewhere carries the vertices; kin share the way evenly, so that none is bent alone.  A vertex
@@ -59,7 +60,7 @@ struct Alignment {
 // Boundary vertices and landmarks stay.  Every triangle stays positive in every drawing (exact);
 // the star of no vertex has a smaller angle than min(before, 8 degrees); none is stretched or
 // squeezed to more than InteriorMoves::kMostStretch times its size, in any direction.  Fewer than
-// two drawings, plain ones, and those without kin come back as they are.  Equal input gives equal
+// two drawings, and plain ones, come back as they are.  Equal input gives equal
 // output; the order of the drawings changes nothing but rounding.
 //
 // Requires  a valid mesh; textures reduced to AlignmentSize(N).

@@ -76,6 +76,7 @@ Result<void> AlignGroup(const Comparison& comparison, AlignmentGroup* group, Pro
   group->pictures = group->unaligned;
   group->moving.clear();
   for (const int i : group->members) group->moving.push_back(comparison.Unmoved(i));
+  if (group->members.size() < 2) return {};
   TRY(MoveTogether(comparison, group, progress));
 
   const auto take_back = [&](std::size_t k) {

@@ -11,7 +11,7 @@
 
 namespace posespace {
 
-// Drawings that show the same (kin.h), two or more, and how they come to correspond.
+// Drawings that show the same (kin.h), and how they come to correspond.
 struct AlignmentGroup {
   std::vector<int> members;          // the first one is what the others are brought to
   std::vector<cv::Mat3f> unaligned;  // by member: filled, on the raster of the comparison
@@ -24,7 +24,7 @@ struct AlignmentGroup {
 // less the mean of all fields, so that none is bent alone.  After each round a vertex goes back as
 // far as the colours around it came no closer to the others'.  A member keeps its old vertices
 // where moving them does not lower the group's ghost loss; all do when that falls by less than a
-// twentieth.
+// twentieth.  One drawing stays where it is.
 //
 // Requires  members, unaligned and painted.
 // Fails     kCancelled.

@@ -27,13 +27,12 @@ Eigen::Matrix2d SidesOf(const Triangles& triangles, const Points& pose, int t) {
   return sides;
 }
 
-// Both singular values of a map that does not mirror lie within kMostStretch of one.
-bool IsGentle(const Eigen::Matrix2d& map) {
+// The largest singular value of a map that does not mirror, or one over the smallest.
+double StretchOf(const Eigen::Matrix2d& map) {
   const double squares = map.squaredNorm(), area = map.determinant();
   const double sum = std::sqrt(squares + 2.0 * area);
   const double difference = std::sqrt(std::max(squares - 2.0 * area, 0.0));
-  return sum + difference <= 2.0 * InteriorMoves::kMostStretch &&
-         sum - difference >= 2.0 / InteriorMoves::kMostStretch;
+  return std::max(0.5 * (sum + difference), 0.5 * (sum + difference) / area);
 }
 
 }  // namespace
@@ -44,6 +43,7 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
       free_(mesh.num_vertices(), 1),
       around_(mesh.num_vertices()),
       least_(mesh.num_triangles(), 0.0),
+      most_stretch_(mesh.num_triangles(), kMostStretch),
       inverse_(mesh.num_triangles()) {
   for (const std::vector<int>& loop : mesh.boundary) {
     for (const int v : loop) free_[v] = 0;
@@ -66,6 +66,13 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
   }
 }
 
+void InteriorMoves::Tighten(double most) {
+  for (std::size_t t = 0; t < inverse_.size(); ++t) {
+    const double now = StretchOf(SidesOf(*triangles_, pose_, static_cast<int>(t)) * inverse_[t]);
+    most_stretch_[t] = std::min(most_stretch_[t], std::max(most, now));
+  }
+}
+
 bool InteriorMoves::Move(int vertex, const Point& to) {
   const Point from = pose_.row(vertex).transpose();
   pose_.row(vertex) = to.transpose();
@@ -81,7 +88,7 @@ bool InteriorMoves::IsAllowed(int vertex) const {
                        pose_.row(triangles(t, 1)).transpose(),
                        pose_.row(triangles(t, 2)).transpose()) > 0 &&
            AngleOf(triangles, pose_, t) >= least_[t] &&
-           IsGentle(SidesOf(triangles, pose_, t) * inverse_[t]);
+           StretchOf(SidesOf(triangles, pose_, t) * inverse_[t]) <= most_stretch_[t];
   });
 }
 

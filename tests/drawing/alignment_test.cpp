@@ -97,6 +97,19 @@ double LongestWay(const Points& from, const Points& to) {
   return (to - from).rowwise().norm().maxCoeff();
 }
 
+// By how much the edge that changed its length most is longer, or shorter, than in drawing i.
+double MostStretch(const CompatibleMesh& mesh, int i, const Points& pose) {
+  const Edges edges = EdgesOf(mesh.triangles);
+  double most = 1.0;
+  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+    const int a = edges(e, 0), b = edges(e, 1);
+    const double ratio =
+        (pose.row(a) - pose.row(b)).norm() / (mesh.poses[i].row(a) - mesh.poses[i].row(b)).norm();
+    most = std::max({most, ratio, 1.0 / ratio});
+  }
+  return most;
+}
+
 std::vector<double> StarAngles(const CompatibleMesh& mesh, const Points& pose) {
   std::vector<double> angles(mesh.num_vertices(), std::numbers::pi);
   for (int t = 0; t < mesh.num_triangles(); ++t) {
@@ -162,7 +175,7 @@ TEST(AlignInteriors, AlignsEightDrawings) {
   EXPECT_LT(aligned->all.after, 0.4 * aligned->all.before);
 }
 
-TEST(AlignInteriors, KeepsEveryTrianglePositiveAndEveryStarsAngle) {
+TEST(AlignInteriors, KeepsEveryTrianglePositiveEveryStarsAngleAndAllInShape) {
   constexpr double kSharp = 8.0 * std::numbers::pi / 180.0;
   for (const unsigned seed : {1u, 2u, 3u, 4u}) {
     CompatibleMesh mesh = SquareMesh(3);
@@ -178,6 +191,7 @@ TEST(AlignInteriors, KeepsEveryTrianglePositiveAndEveryStarsAngle) {
       for (int v = 0; v < mesh.num_vertices(); ++v) {
         ASSERT_GE(after[v], std::min(before[v], kSharp)) << "vertex " << v;
       }
+      EXPECT_LE(MostStretch(given, i, mesh.poses[i]), 2.5 + 1e-9);
     }
   }
 }
@@ -209,6 +223,19 @@ TEST(AlignInteriors, KeepsAFaceFromTheBackOfAHead) {
   ASSERT_THAT(aligned, Succeeds());
   EXPECT_EQ(aligned->poses, mesh.poses);
   EXPECT_EQ(aligned->all.after, aligned->all.before);
+}
+
+TEST(AlignInteriors, BringsEyesTogetherWhereCoatsHaveNothingInCommon) {
+  Image left = Face(40, 80), right = Face(48, 80);
+  for (int k = 0; k < 4; ++k) {
+    PaintBox(&left, 100 + 10 * k, 50, 5, 50, kInk);
+    PaintBox(&right, 100, 50 + 10 * k, 50, 5, kInk);
+  }
+  const CompatibleMesh mesh = SquareMesh(2);
+  const auto aligned = Align(mesh, {left, right});
+  ASSERT_THAT(aligned, Succeeds());
+  EXPECT_NEAR(MeanWay(aligned->poses[0], aligned->poses[1], {40, 80}, 15.0).x(), 8.0, 2.0);
+  for (int i = 0; i < 2; ++i) EXPECT_LE(MostStretch(mesh, i, aligned->poses[i]), 1.5 + 1e-9);
 }
 
 TEST(AlignInteriors, AlignsFrontsWithFrontsAndBacksWithBacks) {
