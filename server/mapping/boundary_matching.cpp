@@ -16,6 +16,7 @@
 #include "mapping/matching_confidence.h"
 #include "mapping/matching_tree.h"
 #include "mapping/mirror_symmetry.h"
+#include "mapping/moved_limbs.h"
 #include "mapping/outline_curve.h"
 #include "mapping/outline_map.h"
 #include "mapping/outline_mismatch.h"
@@ -182,6 +183,9 @@ class GroupMatching {
           if (freely.cost < kTurnedCopy * match.cost && IsTurned(i, j, freely.map)) {
             weights = turned;
             match = std::move(freely);
+          } else if (auto loose = MatchMovedLimbs(curves_[i], curves_[j], match, weights)) {
+            weights = loose->weights;
+            match = std::move(loose->match);
           }
         }
         costs_(i, j) = costs_(j, i) = match.cost;
@@ -317,9 +321,7 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
                                         const MatchingOptions& options, Progress* progress) {
   TRY(CheckCorners(shapes));
   std::vector<OutlineCurve> curves = CurvesOf(shapes);
-  if (options.thickness_weight > 0.0) {
-    for (OutlineCurve& curve : curves) curve.MeasureThickness();
-  }
+  for (OutlineCurve& curve : curves) curve.MeasureThickness();
   Marks marks = TRY(PlaceLandmarks(shapes, curves, landmarks, options));
   const std::vector<int> order = CanonicalOrder(shapes, marks);
   for (auto& on : marks.on) on = Reordered(on, order);

@@ -29,7 +29,8 @@ struct MatchingOptions {
   // Weights of |position difference|^2 (from the centroids, in spreads of the drawings: the root of
   // the area of a disc whose area is spread as widely), of |colour difference|^2, and of
   // ln(slope)^2 against uneven stretching.  Position says that drawings are upright; it is left out
-  // between drawings whose common landmarks lie turned by more than 45 degrees.
+  // between drawings whose common landmarks lie turned by more than 45 degrees, and between
+  // unmarked ones that match clearly better when limbs may lie anywhere (moved_limbs.h).
   double position_weight = 0.15;
   double colour_weight = 0.3;
   double stretch_weight = 0.05;

@@ -12,6 +12,7 @@ namespace posespace {
 namespace {
 
 constexpr int kCoarseSamples = 64;
+constexpr int kMiddleSamples = 128;
 constexpr int kFineSamples = 256;
 constexpr int kRefinement = 4;     // the last pass has this many samples for each fine one
 constexpr int kBandSamples = 2;    // fine samples either side that the last pass may move
@@ -153,6 +154,11 @@ CoarseMatch MatchCoarsely(const OutlineCurve& a, const OutlineCurve& b,
   std::vector<double> starts;
   for (const int s : shifts) starts.push_back(static_cast<double>(s) / m);
   return {alignment.cost, std::move(map).Map(), std::move(starts)};
+}
+
+OutlineMap MatchFrom(const OutlineCurve& a, const OutlineCurve& b, double start,
+                     const PairWeights& weights) {
+  return MatchArcs(a, b, {{0.0, start}}, kMiddleSamples, kFineMaxStep, false, weights).map;
 }
 
 FineMatch MatchFinely(const OutlineCurve& a, const OutlineCurve& b,

@@ -27,6 +27,11 @@ struct FineMatch {
 CoarseMatch MatchCoarsely(const OutlineCurve& a, const OutlineCurve& b,
                           const std::vector<Anchor>& anchors, const PairWeights& weights);
 
+// A match from 128 samples that takes a's position 0 to this one of b: quick, but finer than the
+// coarse one, for maps to be compared.
+OutlineMap MatchFrom(const OutlineCurve& a, const OutlineCurve& b, double start,
+                     const PairWeights& weights);
+
 // A match from 256 samples refined to 1024, through the anchors or, when there are none, from the
 // best of the given starts.  The cut is moved to the most salient pair of places and the match
 // repeated, so that no start is met exactly only because it was a sample.

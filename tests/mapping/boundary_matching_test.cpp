@@ -196,6 +196,35 @@ TEST(MatchBoundaries, IgnoresColoursOfDrawingsPaintedOtherwise) {
   }
 }
 
+TEST(MatchBoundaries, TakesARaisedTailForAHangingOneAndNotForAThigh) {
+  const TailedPair pair = RaisedAndHangingTail();
+  for (const bool swapped : {false, true}) {
+    const int up = swapped ? 1 : 0, down = 1 - up;
+    std::vector<Points> outlines(2);
+    outlines[up] = pair.raised;
+    outlines[down] = StartedAt(pair.hanging, 7);
+    const MatchedOutlines match = Matched(ShapesOf(outlines));
+    ExpectRingsFollowOutlines(match, ShapesOf(outlines));
+    const int tip = RowAt(match.outlines[up], pair.raised_tip);
+    ASSERT_GE(tip, 0);
+    EXPECT_LT((RowOf(match.outlines[down], tip) - pair.hanging_tip).norm(), 12.0);
+    EXPECT_THAT(match.confidence, Each(Gt(0.5)));
+    EXPECT_THAT(match.proposal.flips, Each(false));
+  }
+}
+
+TEST(MatchBoundaries, KeepsLeftLimbsLeftThoughTheRightOnesAreMoreAlike) {
+  // The left arm is short and thick and the right one long and thin, then the other way about.
+  const Points first = PointsOf(
+      "-10 -40, 10 -40, 10 -20, 60 -20, 60 -14, 10 -14, 10 40, -10 40, -10 -6,"
+      "-35 -6, -35 -22, -10 -22");
+  const Points second = Mirrored(first);
+  const MatchedOutlines match = Matched(ShapesOf({first, second}));
+  const int tip = RowAt(match.outlines[0], {60.0, -20.0});
+  ASSERT_GE(tip, 0);
+  EXPECT_GT(RowOf(match.outlines[1], tip).x(), 10.0);  // where the body ends
+}
+
 TEST(MatchBoundaries, IsLessSureOfADrawingThatFacesTheOtherWay) {
   const Points figure = Figure(120, 5, 100.0, 11);
   const MatchedOutlines match =

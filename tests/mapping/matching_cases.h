@@ -12,6 +12,7 @@
 #include "geometry/polygon.h"
 #include "mapping/boundary_matching.h"
 #include "tests/mapping/rings.h"
+#include "tests/support/points.h"
 
 // Drawings to match, and what every match must be.
 
@@ -85,6 +86,27 @@ inline Points Mirrored(const Points& ring) {
   Points mirrored = ring.colwise().reverse();
   mirrored.col(0) *= -1.0;
   return mirrored;
+}
+
+// An animal that faces left with its tail raised, and with it hanging beside its thigh.
+struct TailedPair {
+  Points raised, hanging;
+  Point raised_tip, hanging_tip;
+};
+
+inline TailedPair RaisedAndHangingTail() {
+  const std::string head = "0 14, 0 4, 10 -4, 12 -22, 20 -24, 30 -6, 36 4, 60 -2, ";
+  const std::string raised =
+      "92 2, 99 -16, 97 -36, 86 -46, 72 -45, 72 -54, 88 -56, 103 -44, 109 -20, 104 8, 102 30, ";
+  const std::string hanging =
+      "80 0, 98 2, 103 10, 103 30, 112 37, 121 34, 124 41, 118 47, 107 45, ";
+  const std::string legs =
+      "104 62, 92 62, 91 44, 85 44, 84 62, 74 62, 72 40, 34 40, 33 62, 23 62, 22 44, 17 44, 16 62,"
+      " 6 62, 5 34";
+  return {PointsOf(head + raised + legs),
+          PointsOf(head + hanging + legs),
+          {72.0, -54.0},
+          {124.0, 41.0}};
 }
 
 // A drawing and the same with its limbs bent about: angles and lengths change along the outline.
