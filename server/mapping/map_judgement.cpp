@@ -9,8 +9,9 @@ namespace {
 
 // Every group of the fifty real ones that is right by position alone stays right with kThickness
 // from 0.06 to 0.15, kPlace from 0.8 to 3 and kPlaceLimit from 0.2 to 0.45, one changed at a time;
-// that which comes right by judging does so with all of these but kThickness below 0.1.  With kPlace
-// 1.2, symmetric drawings beside others that are not lose their symmetry; with 1.6 they keep it.
+// that which comes right by judging does so with all of these but kThickness below 0.1.  With
+// kPlace 1.2, symmetric drawings beside others that are not lose their symmetry; with 1.6 they keep
+// it.
 constexpr double kStretch = 0.05;
 constexpr double kThickness = 0.1;
 constexpr double kPlace = 2.0;
