@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "geometry/polygon.h"
 #include "mapping/close_matching.h"
@@ -16,6 +17,7 @@
 #include "mapping/matching_confidence.h"
 #include "mapping/matching_tree.h"
 #include "mapping/mirror_symmetry.h"
+#include "mapping/missed_corners.h"
 #include "mapping/moved_limbs.h"
 #include "mapping/outline_curve.h"
 #include "mapping/outline_map.h"
@@ -332,6 +334,7 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
   if (!matching.Run()) return cancelled;
 
   CommonRows rows = matching.Rows();
+  const auto missed = FindMissedCorners(rows.outlines);
   const MatchingEvidence evidence = matching.Evidence();
   const FlipProposal proposal = ProposeFlips(evidence);
   const std::vector<double> confidence = ConfidenceOf(evidence, proposal);
@@ -361,6 +364,14 @@ Result<MatchedOutlines> MatchBoundaries(std::span<const MatchingShape> shapes,
       result.mismatch->landmarks.push_back(static_cast<int>(tuple - of_tuple.begin()));
     }
     std::sort(result.mismatch->landmarks.begin(), result.mismatch->landmarks.end());
+  }
+  if (missed) {
+    result.missed_corners = MissedCorners{order[missed->first], order[missed->second],
+                                          missed->count, missed->on_first, missed->on_second};
+    if (result.missed_corners->first > result.missed_corners->second) {
+      std::swap(result.missed_corners->first, result.missed_corners->second);
+      std::swap(result.missed_corners->on_first, result.missed_corners->on_second);
+    }
   }
   for (const int landmark : of_tuple) {
     result.landmark_rows.push_back(rows.landmark_rows[landmark]);

@@ -69,6 +69,16 @@ struct Mismatch {
   std::vector<int> landmarks;  // those at the ends of the arc where most of it lies
 };
 
+// Two drawings with sharp corners that are alike but lie beside each other: each meets a straight
+// run of the other drawing up to 0.06 turns from its like, and in between both are bevelled.
+struct MissedCorners {
+  int first;
+  int second;
+  int count;        // of the corners; more than a third of those of the drawing that has fewer
+  Point on_first;   // one of them, drawing pixels
+  Point on_second;  // its like
+};
+
 // Outlines in correspondence.
 struct MatchedOutlines {
   std::vector<Points> outlines;    // N of n x 2: row k is the same place on every outline
@@ -81,6 +91,8 @@ struct MatchedOutlines {
   FlipProposal proposal;
   // The worst of them with a share above 0.15, or above 0.12 when there are landmarks to doubt.
   std::optional<Mismatch> mismatch;
+  // Of the pairs of drawings that miss each other's corners, the one that misses most.
+  std::optional<MissedCorners> missed_corners;
 };
 
 // Checks marks by themselves: what MatchBoundaries would refuse is refused here, all faults at

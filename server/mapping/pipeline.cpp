@@ -94,6 +94,7 @@ Result<Mapping> MapShapes(std::span<const MatchingShape> shapes,
   report.confidence = std::move(matched->confidence);
   result.proposal = std::move(matched->proposal);
   result.mismatch = matched->mismatch;
+  result.missed_corners = matched->missed_corners;
   return result;
 }
 

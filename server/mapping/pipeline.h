@@ -38,6 +38,7 @@ struct Mapping {
   MappingReport report;
   FlipProposal proposal;             // as in MatchedOutlines
   std::optional<Mismatch> mismatch;  // the same
+  std::optional<MissedCorners> missed_corners;
 };
 
 // N drawings -> one mesh that is valid in all of them (paper, section 3): outlines are matched,

@@ -95,6 +95,17 @@ std::vector<std::string> WarningsOf(const Mapping& mapping, const BuildInputs& i
         ": where limbs cross, leave one of these poses out" +
         (mismatch->landmarks.empty() ? "" : "; else check these marks"));
   }
+  if (const auto& missed = mapping.missed_corners) {
+    const auto place = [](const Point& point) {
+      return "(" + std::to_string(std::lround(point.x())) + ", " +
+             std::to_string(std::lround(point.y())) + ")";
+    };
+    warnings.push_back(std::to_string(missed->count) + " sharp corners of drawing '" +
+                       inputs.drawings[missed->first]->id + "' lie beside those of '" +
+                       inputs.drawings[missed->second]->id + "' and would be cut off in between: " +
+                       "mark one in both, as " + place(missed->on_first) + " and " +
+                       place(missed->on_second) + ", or check the marks near it");
+  }
   for (std::size_t t = 0; t < inputs.landmarks.size(); ++t) {
     const auto& points = inputs.landmarks[t].points;
     if (points.size() < 2) continue;
