@@ -48,9 +48,9 @@ struct BlendOptions {
 // Per triangle t and pose i, the map from a rest triangle to the pose is split as R(alpha) S, S
 // symmetric.  A blend targets R(sum w_i alpha_i) (sum w'_i S_i), with w' the shear-limited weights
 // (the stretch may be mixed otherwise), and solves min_V sum_t mass_t |J_t V - target_t|^2, mass_t
-// the area of the rest triangle, or 0.4 of their mean when it is smaller, with one prefactored
-// matrix; each refit replaces the rotations by those nearest to J_t S_t of the last solution and
-// solves again.
+// the area of the rest triangle, more where a pose makes it small (triangle_maps.cpp), with one
+// prefactored matrix; each refit replaces the rotations by those nearest to J_t S_t of the last
+// solution and solves again.
 //
 // Rest shape    The metric of a rest triangle is the mean of the poses' E_i'E_i (E_i its edge
 //               vectors in pose i), so no pose is privileged; it is turned so that pose 0 maps it

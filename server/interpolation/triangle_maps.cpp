@@ -8,10 +8,10 @@
 namespace posespace {
 namespace {
 
-// Splinters count as triangles of this share of the mean area: by their own areas it would cost
-// next to nothing to turn them over.  Of 500 blends of real drawings 7 fold without, 1 with 0.2 or
-// 0.3, and none from 0.4 on.
-constexpr double kLeastMass = 0.4;
+// Of 5,000 blends of real drawings 43 fold where no triangle merely weighs less than 0.4 of the
+// mean, 7 with the power 1/2, and 5, all of one group, with 0.6 to 0.75.
+constexpr double kPower = 2.0 / 3.0;
+constexpr double kMostWeight = 16.0;  // areas
 
 using Eigen::Matrix2d;
 
@@ -27,6 +27,23 @@ Matrix2d EdgesOfTriangle(const Points& pose, const Triangles& triangles, int t) 
   edges.col(0) = pose.row(triangles(t, 1)) - pose.row(triangles(t, 0));
   edges.col(1) = pose.row(triangles(t, 2)) - pose.row(triangles(t, 0));
   return edges;
+}
+
+double AreaOf(const Points& pose, const Triangles& triangles, int t) {
+  return 0.5 * EdgesOfTriangle(pose, triangles, t).determinant();
+}
+
+// The areas, times kPower of how many times smaller a share of the whole some pose gives the
+// triangle.  By its own area it would cost next to nothing to turn over what is small in one pose.
+Eigen::VectorXd MassesOf(const CompatibleMesh& mesh, const Eigen::VectorXd& areas) {
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(areas.size(), 1.0);
+  for (const Points& pose : mesh.poses) {
+    Eigen::VectorXd shares(areas.size());
+    for (int t = 0; t < shares.size(); ++t) shares[t] = AreaOf(pose, mesh.triangles, t);
+    least = least.cwiseMin(shares / shares.sum());
+  }
+  const Eigen::ArrayXd smaller = areas.array() / areas.sum() / least.array();
+  return areas.array() * smaller.max(1.0).pow(kPower).min(kMostWeight);
 }
 
 // The angle of the rotation nearest to `map`, its polar factor.
@@ -149,7 +166,7 @@ TriangleMaps MeasureTriangles(const CompatibleMesh& mesh, RestShape rest_shape) 
       maps.stretches(2 * num_triangles + t, i) = stretch(1, 1);
     }
   }
-  maps.masses = maps.areas.cwiseMax(kLeastMass * maps.areas.mean());
+  maps.masses = MassesOf(mesh, maps.areas);
   return maps;
 }
 

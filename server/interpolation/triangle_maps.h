@@ -22,7 +22,7 @@ enum class RestShape {
 struct TriangleMaps {
   Eigen::MatrixXd gradients;  // T x 6: the rest gradient (x, y) of each corner's hat function
   Eigen::VectorXd areas;      // T, of the rest triangles
-  Eigen::VectorXd masses;     // T: the areas, those below 0.4 of their mean raised to it
+  Eigen::VectorXd masses;     // T: the areas, more where some pose makes the triangle small
   Eigen::MatrixXd rotations;  // T x N, radians, continuous over each part of the mesh
   Eigen::MatrixXd stretches;  // 3 T x N: all xx, then all xy, then all yy
 };

@@ -89,8 +89,9 @@ def limited(weights: Array, limit: str) -> Array:
 class DenseRigidBlend:
     """poses (N, V, 2), one triangle list; `turns` as the service exports them.
 
-    base "mean": the rest triangle has the mean metric, triangles weigh as their rest areas,
-        or as 0.4 of the mean of these if they are smaller.
+    base "mean": the rest triangle has the mean metric, triangles weigh as their rest areas, times
+        the power 2/3 of how many times larger their share of all areas is than in the pose that
+        gives them the least of its own; at most sixteen times.
     base "first": the rest triangle is that of pose 0, all weigh the same (the published form).
     """
 
@@ -109,8 +110,10 @@ class DenseRigidBlend:
             mean_stretch = np.broadcast_to(np.eye(2), e[0].shape)
         self.rest = mean_stretch @ e[0]
         areas = np.linalg.det(self.rest) / 2
-        splinters = 0.4 * areas.mean()
-        self.masses = np.maximum(areas, splinters) if base == "mean" else np.ones_like(areas)
+        doubled = np.linalg.det(e)  # (N, T)
+        least = (doubled / doubled.sum(axis=1, keepdims=True)).min(axis=0)
+        factor = (np.maximum(areas / areas.sum() / least, 1) ** (2 / 3)).clip(max=16)
+        self.masses = areas * factor if base == "mean" else np.ones_like(areas)
 
         stretch_of_a = rotation(-theta) @ a
         beyond = stretch_of_a @ np.linalg.inv(mean_stretch)

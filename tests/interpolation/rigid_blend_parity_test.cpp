@@ -130,9 +130,22 @@ Points DenseBlend(const CompatibleMesh& mesh, const Eigen::VectorXd& weights,
   }
 
   // sqrt(mass) J_t V = sqrt(mass) target, and vertex 0 at 0.
+  std::vector<double> root_mass(num_triangles, 1.0);
+  for (int t = 0; variant.mean_rest && t < num_triangles; ++t) {
+    double factor = 1.0;
+    for (const Points& pose : mesh.poses) {
+      double whole = 0.0;
+      for (const auto& row : mesh.triangles.rowwise()) {
+        whole += 0.5 * EdgeMatrix(pose, row).determinant();
+      }
+      const double share = 0.5 * EdgeMatrix(pose, mesh.triangles.row(t)).determinant() / whole;
+      factor = std::max(factor, std::pow(area[t] / areas.sum() / share, 2.0 / 3.0));
+    }
+    root_mass[t] = std::sqrt(area[t] * std::min(factor, 16.0));
+  }
   Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(2 * num_triangles + 1, num_vertices);
   for (int t = 0; t < num_triangles; ++t) {
-    const double root = std::sqrt(variant.mean_rest ? std::max(area[t], 0.4 * areas.mean()) : 1.0);
+    const double root = root_mass[t];
     for (int k = 0; k < 2; ++k) {
       for (int e = 0; e < 2; ++e) {
         equations(2 * t + k, mesh.triangles(t, e)) += root * inverse_rest[t](e, k);
@@ -151,9 +164,7 @@ Points DenseBlend(const CompatibleMesh& mesh, const Eigen::VectorXd& weights,
         rotation[t] = NearestRotation(EdgeMatrix(points, mesh.triangles.row(t)) * inverse_rest[t] *
                                       stretch[t]);
       }
-      const double root =
-          std::sqrt(variant.mean_rest ? std::max(area[t], 0.4 * areas.mean()) : 1.0);
-      targets.middleRows(2 * t, 2) = root * (rotation[t] * stretch[t]).transpose();
+      targets.middleRows(2 * t, 2) = root_mass[t] * (rotation[t] * stretch[t]).transpose();
     }
     vertices = qr.solve(targets);
   }

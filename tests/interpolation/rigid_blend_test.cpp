@@ -49,17 +49,38 @@ CompatibleMesh Limbs(unsigned seed, double most = 1.0) {
   return mesh;
 }
 
-TEST(MeasureTriangles, RaisesTheMassOfSplintersToFourTenthsOfTheMeanArea) {
-  CompatibleMesh mesh;  // a square in two halves, with a splinter on one side
-  mesh.poses.push_back(PointsOf("0 0, 10 0, 10 10, 0 10, 10.1 5"));
-  mesh.poses.push_back(PointsOf("0 0, 20 0, 20 20, 0 20, 20.3 10"));
+// A square in two halves, and a triangle on one side of it whose height is some sides, in two poses
+// of which the second is twice as large.
+CompatibleMesh SquareWithATip(double height_first, double height_second) {
+  CompatibleMesh mesh;
+  mesh.poses.push_back(PointsOf("0 0, 10 0, 10 10, 0 10, 10 5"));
+  mesh.poses.push_back(PointsOf("0 0, 20 0, 20 20, 0 20, 20 10"));
+  mesh.poses[0](4, 0) += 10.0 * height_first;
+  mesh.poses[1](4, 0) += 20.0 * height_second;
   mesh.triangles.resize(3, 3);
   mesh.triangles << 0, 1, 2, 0, 2, 3, 1, 4, 2;
-  const TriangleMaps maps = MeasureTriangles(mesh, RestShape::kMean);
-  EXPECT_EQ(maps.masses[0], maps.areas[0]);
-  EXPECT_EQ(maps.masses[1], maps.areas[1]);
-  EXPECT_LT(maps.areas[2], 0.02 * maps.areas[0]);
-  EXPECT_DOUBLE_EQ(maps.masses[2], 0.4 * maps.areas.mean());
+  return mesh;
+}
+
+TEST(MeasureTriangles, WeighsByAreaWhatIsAsLargeInAllPoses) {
+  for (const double height : {1.0, 0.01}) {
+    const TriangleMaps maps = MeasureTriangles(SquareWithATip(height, height), RestShape::kMean);
+    EXPECT_LT((maps.masses - maps.areas).norm(), 1e-9 * maps.areas.norm());
+  }
+}
+
+TEST(MeasureTriangles, WeighsMoreWhatIsSmallInOnePose) {
+  const TriangleMaps maps = MeasureTriangles(SquareWithATip(1.0, 0.04), RestShape::kMean);
+  const double least = 0.02 / 1.02;  // the tip's share of the second pose
+  const double smaller = maps.areas[2] / maps.areas.sum() / least;
+  EXPECT_NEAR(maps.masses[2], maps.areas[2] * std::pow(smaller, 2.0 / 3.0), 1e-9 * maps.areas[2]);
+  EXPECT_GT(maps.masses[2], 2.0 * maps.areas[2]);
+}
+
+TEST(MeasureTriangles, WeighsNothingMoreThanSixteenTimesItsArea) {
+  const TriangleMaps maps = MeasureTriangles(SquareWithATip(1.0, 1e-6), RestShape::kMean);
+  EXPECT_NEAR(maps.masses[2], 16.0 * maps.areas[2], 1e-9 * maps.areas[2]);
+  EXPECT_LE((maps.masses.array() / maps.areas.array()).maxCoeff(), 16.0 * (1.0 + 1e-12));
 }
 
 TEST(RigidBlend, ReproducesEachPose) {
