@@ -125,7 +125,9 @@ def plot(file: Path, panels: dict[str, tuple[list[int], list[dict[str, float]]]]
     axes[0].set_ylabel("seconds")
     axes[-1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.tight_layout()
-    figure.savefig(file, metadata={"Date": None, "Creator": None})
+    figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+    head, rest = file.read_text().split("\n", 1)
+    file.write_text(f"{head}\n<!-- SPDX-License-Identifier: Apache-2.0 -->\n{rest}")
 
 
 def main() -> None:
