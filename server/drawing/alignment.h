@@ -49,7 +49,7 @@ struct Alignment {
 // All drawings are warped to `common` (V x 2, such as the blend with equal weights); there,
 // drawings that show the same are kin (kin.h), as fronts of a figure are, or backs of it, and each
 // group of kin is aligned by itself: a face and the back of a head have nothing to bring together;
-// then groups, gently, where they do have something in common (group_linking.h).
+// then groups, where they do have something in common (group_linking.h).
 // Image flow from the one that differs least from its kin says where each one's features lie.  A
 // field that follows the flow at features, as far as pictures agree about them, and is smooth
 // elsewhere carries the vertices; kin share the way evenly, so that none is bent alone.  A vertex

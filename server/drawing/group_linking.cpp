@@ -12,7 +12,6 @@ namespace posespace {
 namespace {
 
 constexpr int kRounds = 2;              // of measuring and moving
-constexpr double kGently = 1.5;         // most stretch
 constexpr double kWindow = 16.0 / 512;  // surroundings: deviation, / raster size
 
 // Less ghost loss taken away is not worth moving drawings that mostly do not correspond.
@@ -101,9 +100,6 @@ Result<void> LinkGroups(const Comparison& comparison, const cv::Mat1b& painted,
                         std::vector<AlignmentGroup>* groups, Progress* progress) {
   if (groups->size() < 2) return {};
   const std::vector<AlignmentGroup> given = *groups;
-  for (AlignmentGroup& group : *groups) {
-    for (Moving& each : group.moving) each.moves.Tighten(kGently);
-  }
   TRY(MoveTogether(comparison, painted, given, groups, progress));
 
   const double together = GhostsOf(*groups, painted);

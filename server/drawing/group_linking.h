@@ -14,10 +14,8 @@ namespace posespace {
 // Brings groups that were aligned by themselves to each other where they have something in common:
 // belts of fronts and backs, eyes of two kinds of animal.  The first member of each group moves
 // towards that of the first group and its kin follow it, as far as the details around a vertex
-// come closer for it, and gently: no triangle is stretched or squeezed beyond 1.5 times its size,
-// or beyond what it was for its kin, since most of what they show does not correspond.  A group
-// stays where that does not lower the ghost loss of all drawings; all do when that falls by less
-// than a fiftieth.
+// come closer for it.  A group stays where that does not lower the ghost loss of all drawings; all
+// do when that falls by less than a fiftieth.
 //
 // Requires  groups that AlignGroup moved, or single drawings; `painted` is where all are painted.
 // Fails     kCancelled.

@@ -43,7 +43,6 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
       free_(mesh.num_vertices(), 1),
       around_(mesh.num_vertices()),
       least_(mesh.num_triangles(), 0.0),
-      most_stretch_(mesh.num_triangles(), kMostStretch),
       inverse_(mesh.num_triangles()) {
   for (const std::vector<int>& loop : mesh.boundary) {
     for (const int v : loop) free_[v] = 0;
@@ -66,13 +65,6 @@ InteriorMoves::InteriorMoves(const CompatibleMesh& mesh, const Points& pose)
   }
 }
 
-void InteriorMoves::Tighten(double most) {
-  for (std::size_t t = 0; t < inverse_.size(); ++t) {
-    const double now = StretchOf(SidesOf(*triangles_, pose_, static_cast<int>(t)) * inverse_[t]);
-    most_stretch_[t] = std::min(most_stretch_[t], std::max(most, now));
-  }
-}
-
 bool InteriorMoves::Move(int vertex, const Point& to) {
   const Point from = pose_.row(vertex).transpose();
   pose_.row(vertex) = to.transpose();
@@ -88,7 +80,7 @@ bool InteriorMoves::IsAllowed(int vertex) const {
                        pose_.row(triangles(t, 1)).transpose(),
                        pose_.row(triangles(t, 2)).transpose()) > 0 &&
            AngleOf(triangles, pose_, t) >= least_[t] &&
-           StretchOf(SidesOf(triangles, pose_, t) * inverse_[t]) <= most_stretch_[t];
+           StretchOf(SidesOf(triangles, pose_, t) * inverse_[t]) <= kMostStretch;
   });
 }
 

@@ -25,9 +25,6 @@ class InteriorMoves {
   // By vertex: true for those inside the mesh that are no landmarks.  Only they may move.
   const std::vector<char>& free() const { return free_; }
 
-  // From here on no triangle may be stretched or squeezed beyond `most`, or beyond what it is now.
-  void Tighten(double most);
-
   // Moves a free vertex if that is allowed, and says whether it did.
   bool Move(int vertex, const Point& to);
 
@@ -39,7 +36,6 @@ class InteriorMoves {
   std::vector<char> free_;
   std::vector<std::vector<int>> around_;  // triangles at each vertex
   std::vector<double> least_;             // angle of each triangle, radians
-  std::vector<double> most_stretch_;      // of each triangle
   std::vector<Eigen::Matrix2d> inverse_;  // of two sides of each triangle as given, in columns
 };
 
