@@ -236,7 +236,8 @@ TEST(AlignInteriors, BringsEyesTogetherWhereCoatsHaveNothingInCommon) {
   const auto aligned = Align(mesh, {left, right});
   ASSERT_THAT(aligned, Succeeds());
   EXPECT_NEAR(MeanWay(aligned->poses[0], aligned->poses[1], {40, 80}, 15.0).x(), 8.0, 2.0);
-  for (int i = 0; i < 2; ++i) EXPECT_LE(MostStretch(mesh, i, aligned->poses[i]), InteriorMoves::kMostStretch + 1e-9);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_LE(MostStretch(mesh, i, aligned->poses[i]), InteriorMoves::kMostStretch + 1e-9);
 }
 
 TEST(AlignInteriors, AlignsFrontsWithFrontsAndBacksWithBacks) {
