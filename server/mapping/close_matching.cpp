@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "mapping/elastic_alignment.h"
@@ -26,11 +27,16 @@ constexpr double kStiffness = 12.0;       // times the weight of stretching
 constexpr double kArm = 0.004;            // turns either side, for the direction of the outline
 constexpr double kReach = 0.06;           // turns that a place may move in a pass
 constexpr int kRotationSamples = 256;
-constexpr double kPart = 0.06;  // turns, the standard deviation of the window of a part's rotation
-// What the match may cost more when the drawings are turned as a whole: letters cost up to 1.15
-// times as much or too little to tell, swinging limbs 1.2 to 2 times, bent bars 4 and more.
-constexpr double kWholeTie = 1.15;
-constexpr double kWholeTieCost = 0.006;
+// How the drawings are turned onto each other: as a whole, by large parts, or by limbs.
+struct Turning {
+  double part;  // turns, the standard deviation of the window of a part's rotation; 0: the whole
+  double tie;   // by how much it must cost less than what is coarser, beside kTie
+};
+constexpr Turning kTurnings[] = {{0.0, 0.0}, {0.06, 0.006}, {0.02, 0.035}};
+// What the match may cost more when turned more coarsely: letters cost up to 1.15 times as much as
+// a whole or too little to tell, swinging limbs 1.2 to 2 times, bent bars 4 and more.  By limbs
+// letters cost less by up to 0.03, a figure whose arms go from hanging to raised by 0.05 to 0.13.
+constexpr double kTie = 1.15;
 
 constexpr double kStrokeShare = 0.5;  // of an outline that has a place across: then it is a stroke
 constexpr double kSideReach = 0.016;  // turns that a side may move in a pass
@@ -67,11 +73,11 @@ std::vector<Direction> MeanRotation(const std::vector<Direction>& rotations) {
   return std::vector<Direction>(rotations.size(), Normalised(sum));
 }
 
-std::vector<Direction> SmoothRotations(const std::vector<Direction>& rotations) {
+std::vector<Direction> SmoothRotations(const std::vector<Direction>& rotations, double part) {
   const int n = static_cast<int>(rotations.size());
   std::vector<double> window;
   for (int k = 0; k < n; ++k) {
-    const double turns = static_cast<double>(std::min(k, n - k)) / n / kPart;
+    const double turns = static_cast<double>(std::min(k, n - k)) / n / part;
     window.push_back(std::exp(-0.5 * turns * turns));
   }
   std::vector<Direction> smooth;
@@ -119,7 +125,7 @@ class ClosePair {
 
   // `keep_sides`: with each place of a thin stroke drawn towards the middle between its image and
   // the place across from the image of its opposite side.
-  CloseMatch Match(OutlineMap map, bool as_a_whole, bool keep_sides) const {
+  CloseMatch Match(OutlineMap map, const Turning& turning, bool keep_sides) const {
     double cost = 0.0;
     for (int pass = 0; pass < kPasses; ++pass) {
       std::vector<Anchor> through = anchors_;
@@ -129,7 +135,8 @@ class ClosePair {
         through = {{cut, map.At(cut)}};
       }
       const auto rotations = RotationsOf(a_, b_, map);
-      const auto smooth = as_a_whole ? MeanRotation(rotations) : SmoothRotations(rotations);
+      const auto smooth =
+          turning.part == 0.0 ? MeanRotation(rotations) : SmoothRotations(rotations, turning.part);
       cost = 0.0;
       ArcsToMap next;
       for (const Arc& arc : ArcsBetween(through)) {
@@ -211,11 +218,16 @@ OutlineMap MatchClosely(const OutlineCurve& a, const StrokeSides& sides_a, const
                         const StrokeSides& sides_b, const std::vector<Anchor>& anchors,
                         const OutlineMap& map, const PairWeights& weights) {
   const ClosePair pair(a, sides_a, b, sides_b, anchors, weights);
-  CloseMatch whole = pair.Match(map, true, false), parts = pair.Match(map, false, false);
-  const bool as_a_whole = whole.cost < kWholeTie * parts.cost + kWholeTieCost;
-  OutlineMap close = as_a_whole ? std::move(whole.map) : std::move(parts.map);
-  if (std::min(sides_a.share(), sides_b.share()) < kStrokeShare) return close;
-  return pair.Match(std::move(close), as_a_whole, true).map;
+  Turning turning = kTurnings[0];
+  CloseMatch close = pair.Match(map, turning, false);
+  for (const Turning& finer : std::span(kTurnings).subspan(1)) {
+    CloseMatch by_parts = pair.Match(map, finer, false);
+    if (close.cost < kTie * by_parts.cost + finer.tie) continue;
+    close = std::move(by_parts);
+    turning = finer;
+  }
+  if (std::min(sides_a.share(), sides_b.share()) < kStrokeShare) return close.map;
+  return pair.Match(std::move(close.map), turning, true).map;
 }
 
 }  // namespace posespace
