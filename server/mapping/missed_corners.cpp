@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "mapping/outline_curve.h"
-#include "mapping/outline_map.h"
 
 namespace posespace {
 namespace {
@@ -62,18 +61,6 @@ struct TurningOutline {
   std::vector<double> turns;  // radians, by sample
   std::vector<Corner> corners;
 };
-
-// The map between outlines in correspondence that takes row k to row k.
-OutlineMap MapBetween(const OutlineCurve& a, const OutlineCurve& b) {
-  std::vector<double> from, to;
-  for (int k = 0; k < a.num_corners(); ++k) {
-    from.push_back(a.corner_position(k));
-    to.push_back(b.corner_position(k));
-  }
-  from.push_back(1.0);
-  to.push_back(1.0);
-  return {std::move(from), std::move(to)};
-}
 
 struct Missed {
   int count = 0;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "geometry/polygon.h"
 
@@ -174,6 +175,17 @@ OutlineCurve OutlineCurve::Mirrored() const {
   OutlineCurve mirrored(outline, colours_.colwise().reverse());
   if (!log_thickness_.empty()) mirrored.MeasureThickness();
   return mirrored;
+}
+
+OutlineMap MapBetween(const OutlineCurve& a, const OutlineCurve& b) {
+  std::vector<double> from, to;
+  for (int k = 0; k < a.num_corners(); ++k) {
+    from.push_back(a.corner_position(k));
+    to.push_back(b.corner_position(k));
+  }
+  from.push_back(1.0);
+  to.push_back(1.0);
+  return {std::move(from), std::move(to)};
 }
 
 }  // namespace posespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "mapping/outline_map.h"
 
 namespace posespace {
 
@@ -80,6 +81,10 @@ class OutlineCurve {
   double spread_;                      // what positions are measured in, drawing pixels
   std::vector<double> log_thickness_;  // at places spaced evenly; empty: not measured
 };
+
+// The map between outlines in correspondence that takes row k to row k.
+// Requires  equal numbers of corners.
+OutlineMap MapBetween(const OutlineCurve& a, const OutlineCurve& b);
 
 }  // namespace posespace
 

@@ -51,14 +51,7 @@ TEST(StrokeSides, AreNotTheTwoBanksOfAGap) {
 double MeanSlip(const MatchedOutlines& match) {
   const OutlineCurve a = CurveOf(match.outlines[0]), b = CurveOf(match.outlines[1]);
   const StrokeSides sides_a(a), sides_b(b);
-  std::vector<double> from, to;
-  for (int k = 0; k < a.num_corners(); ++k) {
-    from.push_back(a.corner_position(k));
-    to.push_back(b.corner_position(k));
-  }
-  from.push_back(1.0);
-  to.push_back(1.0);
-  const OutlineMap map(from, to);
+  const OutlineMap map = MapBetween(a, b);
   double sum = 0.0;
   int count = 0;
   for (int k = 0; k < 400; ++k) {
