@@ -18,7 +18,8 @@ namespace posespace {
 // rounds off.
 //
 // Directions are compared after b is turned onto a, as a whole where that explains them all but as
-// well, or else part by part (by their mean difference over 0.06 turns), as where limbs swing.
+// well, or else part by part (by their mean difference over 0.06 turns), as where limbs swing, or
+// limb by limb (over 0.02), as where an arm is raised that hangs in the other drawing.
 //
 // Where both drawings are made of thin strokes for the most part, as letters and stick figures are,
 // the two sides of strokes are kept together: each place is drawn towards the middle between its
